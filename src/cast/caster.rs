@@ -1,0 +1,47 @@
+//! What an engine implements for each thing that casts.
+
+use crate::cast::CasterPipeline;
+use crate::{Aabb, ShadowView};
+
+/// Identity and version of what a caster would draw, by which a map is kept while nothing in it changes.
+///
+/// Two frames in which a view's casters have equal revisions, in equal order, under an unchanged fit, share one depth render.
+/// Whatever changes a pixel of the depth map must change the version: vertices, world transform, bones, alpha texture,
+/// pipeline. What only moves with the engine's `origin` need not. A version that stands still while the geometry moves leaves
+/// a stale shadow behind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Revision(Option<(u64, u64)>);
+
+impl Revision {
+    /// Never equal to what was drawn before: the view is rendered every frame. The safe default.
+    pub const ALWAYS_CHANGING: Self = Self(None);
+
+    /// `id` tells this caster from all others of the light; `version` counts its changes.
+    pub const fn new(id: u64, version: u64) -> Self {
+        Self(Some((id, version)))
+    }
+
+    /// May a map drawn under this revision be kept?
+    pub(crate) const fn is_stable(&self) -> bool {
+        self.0.is_some()
+    }
+}
+
+/// Something that casts shadows.
+pub trait ShadowCaster {
+    /// Bounds in render space of everything that [`ShadowCaster::draw`] may draw, displacement included. Used to fit and to
+    /// cull. Geometry outside its bounds loses its shadow at times; empty bounds cast nothing.
+    fn bounds(&self) -> Aabb;
+
+    /// How its vertices are laid out and shaded: a handle made once at load time.
+    fn pipeline(&self) -> &CasterPipeline;
+
+    /// Sets vertex and index buffers and draws. Pipeline and bind group 0 are set already; groups 1 and up are the caster's.
+    /// `view` is the depth render being recorded, for engines that choose a level of detail by texel size.
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &ShadowView);
+
+    /// Identity and version of what would be drawn. The default says "always changing", so that a kept map is never stale.
+    fn revision(&self) -> Revision {
+        Revision::ALWAYS_CHANGING
+    }
+}

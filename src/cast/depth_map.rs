@@ -1,0 +1,119 @@
+//! The depth texture that a light owns: one layer per view.
+
+use crate::ShadowError;
+use crate::cast::{DEPTH_FORMAT, DeviceRefusal, capture_device_errors};
+
+/// A layered depth texture, with one attachment per layer and one view of them all.
+#[derive(Debug)]
+pub(crate) struct DepthMap {
+    texture: wgpu::Texture,
+    array_view: wgpu::TextureView,
+    layer_views: Vec<wgpu::TextureView>,
+}
+
+impl DepthMap {
+    /// `size` texels a side, `layers` layers. `field` is the path of the size in the caller's descriptor.
+    pub fn new(
+        device: &wgpu::Device,
+        label: &str,
+        field: &'static str,
+        size: u32,
+        layers: u32,
+    ) -> Result<Self, ShadowError> {
+        let limits = device.limits();
+        if size == 0 {
+            return Err(ShadowError::OutOfRange {
+                field,
+                rule: "at least 1",
+                value: size.to_string(),
+            });
+        }
+        if size > limits.max_texture_dimension_2d {
+            return Err(ShadowError::OverDeviceLimit {
+                field,
+                limit: "max_texture_dimension_2d",
+                maximum: limits.max_texture_dimension_2d,
+                value: size,
+            });
+        }
+        let extent = wgpu::Extent3d {
+            width: size,
+            height: size,
+            depth_or_array_layers: layers,
+        };
+        let create = || {
+            let texture = device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(&format!("{label} depth map")),
+                size: extent,
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: DEPTH_FORMAT,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                    | wgpu::TextureUsages::TEXTURE_BINDING
+                    | wgpu::TextureUsages::COPY_SRC,
+                view_formats: &[],
+            });
+            let array_view = texture.create_view(&wgpu::TextureViewDescriptor {
+                label: Some(&format!("{label} depth map, all layers")),
+                dimension: Some(wgpu::TextureViewDimension::D2Array),
+                ..Default::default()
+            });
+            let layer_views = (0..layers)
+                .map(|layer| {
+                    texture.create_view(&wgpu::TextureViewDescriptor {
+                        label: Some(&format!("{label} depth map, layer {layer}")),
+                        dimension: Some(wgpu::TextureViewDimension::D2),
+                        base_array_layer: layer,
+                        array_layer_count: Some(1),
+                        ..Default::default()
+                    })
+                })
+                .collect();
+            Self {
+                texture,
+                array_view,
+                layer_views,
+            }
+        };
+        capture_device_errors(device, create).map_err(|refusal| match refusal {
+            DeviceRefusal::OutOfMemory => ShadowError::OutOfMemory {
+                field,
+                bytes: bytes(size, layers),
+            },
+            DeviceRefusal::Refused(message) => ShadowError::Device {
+                object: "the depth map",
+                message,
+            },
+        })
+    }
+
+    pub fn texture(&self) -> &wgpu::Texture {
+        &self.texture
+    }
+
+    pub fn array_view(&self) -> &wgpu::TextureView {
+        &self.array_view
+    }
+
+    pub fn layer_view(&self, layer: u32) -> &wgpu::TextureView {
+        &self.layer_views[layer as usize]
+    }
+
+    pub fn size(&self) -> u32 {
+        self.texture.width()
+    }
+
+    pub fn layers(&self) -> u32 {
+        self.texture.depth_or_array_layers()
+    }
+
+    /// Device memory of all layers.
+    pub fn bytes(&self) -> u64 {
+        bytes(self.size(), self.layers())
+    }
+}
+
+fn bytes(size: u32, layers: u32) -> u64 {
+    u64::from(size) * u64::from(size) * u64::from(layers) * 4
+}

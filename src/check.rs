@@ -1,0 +1,101 @@
+//! Validation shared by the lights: each failure names field, rule and value.
+
+use std::fmt::Display;
+
+use glam::DVec3;
+
+use crate::{Aabb, Bias, CascadeSplit, Filter, ShadowCaster, ShadowError};
+
+pub(crate) fn in_range(
+    field: &'static str,
+    rule: &'static str,
+    holds: bool,
+    value: impl Display,
+) -> Result<(), ShadowError> {
+    if holds {
+        Ok(())
+    } else {
+        Err(ShadowError::OutOfRange {
+            field,
+            rule,
+            value: value.to_string(),
+        })
+    }
+}
+
+pub(crate) fn finite_vector(field: &'static str, value: DVec3) -> Result<(), ShadowError> {
+    if value.is_finite() {
+        Ok(())
+    } else {
+        Err(ShadowError::NotFinite {
+            field,
+            value: value.to_string(),
+        })
+    }
+}
+
+pub(crate) fn direction(field: &'static str, value: DVec3) -> Result<(), ShadowError> {
+    finite_vector(field, value)?;
+    if value == DVec3::ZERO {
+        return Err(ShadowError::ZeroDirection { field });
+    }
+    Ok(())
+}
+
+pub(crate) fn bounds(field: &'static str, index: usize, bounds: &Aabb) -> Result<(), ShadowError> {
+    // Empty bounds stand for nothing and may be infinite; NaN compares false and is not empty.
+    if bounds.is_empty() || bounds.is_finite() {
+        return Ok(());
+    }
+    Err(ShadowError::BoundsNotFinite {
+        field,
+        index,
+        value: format!("{}..{}", bounds.min, bounds.max),
+    })
+}
+
+/// Fills `list` with the casters' bounds, once per frame.
+pub(crate) fn caster_bounds(
+    casters: &[&dyn ShadowCaster],
+    list: &mut Vec<Aabb>,
+) -> Result<(), ShadowError> {
+    list.clear();
+    list.extend(casters.iter().map(|caster| caster.bounds()));
+    list.iter()
+        .enumerate()
+        .try_for_each(|(index, caster)| bounds("DirectionalFrame::casters", index, caster))
+}
+
+pub(crate) fn filter(field: &'static str, filter: Filter) -> Result<(), ShadowError> {
+    let sharpness = filter.sharpness();
+    in_range(
+        field,
+        "of a finite sharpness of at least 1",
+        sharpness >= 1.0 && sharpness.is_finite(),
+        sharpness,
+    )
+}
+
+pub(crate) fn bias(field: &'static str, bias: Bias) -> Result<(), ShadowError> {
+    let (constant, slope) = bias.manual();
+    let valid = |value: f32| value >= 0.0 && value.is_finite();
+    in_range(
+        field,
+        "of finite constant and slope of at least 0",
+        valid(constant) && valid(slope),
+        format_args!("constant {constant}, slope {slope}"),
+    )
+}
+
+pub(crate) fn split(field: &'static str, split: CascadeSplit) -> Result<(), ShadowError> {
+    let lambda = match split {
+        CascadeSplit::Practical { lambda } => lambda,
+        CascadeSplit::Uniform | CascadeSplit::Logarithmic => 1.0,
+    };
+    in_range(
+        field,
+        "of a lambda in 0..=1",
+        (0.0..=1.0).contains(&lambda),
+        lambda,
+    )
+}

@@ -1,0 +1,231 @@
+//! Every error of the crate: field, rule, and the value that broke it.
+
+use thiserror::Error;
+
+/// What a shadow light refuses at construction or at its per-frame call.
+///
+/// Whatever the call, an error means that nothing was recorded and that the object keeps its last good state.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ShadowError {
+    /// A number that must be finite was NaN or infinite.
+    #[error("{field} must be finite, got {value}")]
+    NotFinite {
+        /// Path of the field.
+        field: &'static str,
+        /// The value, formatted.
+        value: String,
+    },
+    /// A number lies outside its range.
+    #[error("{field} must be {rule}, got {value}")]
+    OutOfRange {
+        /// Path of the field.
+        field: &'static str,
+        /// The permitted range in words.
+        rule: &'static str,
+        /// The value, formatted.
+        value: String,
+    },
+    /// A size exceeds what the device was created with.
+    #[error("{field} must be at most the device's {limit} = {maximum}, got {value}")]
+    OverDeviceLimit {
+        /// Path of the field.
+        field: &'static str,
+        /// Name of the limit in `wgpu::Limits`.
+        limit: &'static str,
+        /// The device's value of it.
+        maximum: u32,
+        /// The value asked for.
+        value: u32,
+    },
+    /// A direction of length zero has no direction.
+    #[error("{field} must not have length zero")]
+    ZeroDirection {
+        /// Path of the field.
+        field: &'static str,
+    },
+    /// Bounds with a NaN or infinite corner. (Bounds with `min > max` are empty and are passed over without an error.)
+    #[error("{field}[{index}] must have finite corners, got {value}")]
+    BoundsNotFinite {
+        /// Path of the list.
+        field: &'static str,
+        /// Position in the list.
+        index: usize,
+        /// The bounds, formatted.
+        value: String,
+    },
+    /// A camera matrix that describes no volume: not finite, or not invertible.
+    #[error("{field} must be finite and invertible, got {value}")]
+    CameraMatrix {
+        /// Path of the field.
+        field: &'static str,
+        /// The matrix, formatted.
+        value: String,
+    },
+    /// The fitted view cannot be expressed in f32: its extent or its distance from the render origin overflows.
+    #[error(
+        "the fitted view must be representable in f32, got extent {extent_world} at {distance_world} from the render origin"
+    )]
+    ViewNotRepresentable {
+        /// Largest extent of the view in world units.
+        extent_world: f64,
+        /// Its distance from the render origin in world units.
+        distance_world: f64,
+    },
+    /// The device could not hold the depth texture.
+    #[error("{field} needs {bytes} bytes of device memory, and the device is out of memory")]
+    OutOfMemory {
+        /// Path of the field that set the size.
+        field: &'static str,
+        /// Bytes asked for.
+        bytes: u64,
+    },
+    /// The device refused or lost an object; the text is the device's own.
+    #[error("the device refused {object}: {message}")]
+    Device {
+        /// What was being created.
+        object: &'static str,
+        /// The device's own words.
+        message: String,
+    },
+}
+
+/// What [`CasterPipeline::new`](crate::CasterPipeline::new) and [`MeshCaster::new`](crate::MeshCaster::new) refuse.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum CasterError {
+    /// A position attribute the built-in vertex stage cannot read as floats.
+    #[error(
+        "PositionAttribute::format must be a float, snorm or unorm format of 2 to 4 components, got {format:?}"
+    )]
+    PositionFormat {
+        /// The format asked for.
+        format: wgpu::VertexFormat,
+    },
+    /// An attribute that does not lie inside its vertex.
+    #[error(
+        "{field}: offset {offset} + {size} bytes must lie inside the stride of {array_stride} bytes, both multiples of 4"
+    )]
+    VertexLayout {
+        /// Path of the field.
+        field: &'static str,
+        /// Byte offset of the attribute.
+        offset: u64,
+        /// Its size in bytes.
+        size: u64,
+        /// Stride of its buffer.
+        array_stride: u64,
+    },
+    /// The strip index format goes with strip topologies and with no others.
+    #[error(
+        "CasterPipelineDescriptor::strip_index_format goes with strip topologies only, got {topology:?}"
+    )]
+    StripIndexFormat {
+        /// The topology asked for.
+        topology: wgpu::PrimitiveTopology,
+    },
+    /// Lines and points cast no shadow that a surface could receive without bias tricks; only triangles are accepted.
+    #[error("CasterPipelineDescriptor::topology must be a triangle topology, got {topology:?}")]
+    Topology {
+        /// The topology asked for.
+        topology: wgpu::PrimitiveTopology,
+    },
+    /// The device refused the pipeline, most often for the engine's own WGSL; the text is the device's own.
+    #[error("the device refused the caster pipeline: {message}")]
+    Device {
+        /// The device's own words.
+        message: String,
+    },
+    /// A number that must be finite was NaN or infinite.
+    #[error("{field} must be finite, got {value}")]
+    NotFinite {
+        /// Path of the field.
+        field: &'static str,
+        /// The value, formatted.
+        value: String,
+    },
+    /// A range of indices or vertices that the buffer does not hold.
+    #[error("{field} must hold {needed} bytes, got {got}")]
+    BufferTooSmall {
+        /// Path of the field.
+        field: &'static str,
+        /// Bytes that the ranges need.
+        needed: u64,
+        /// Bytes that the buffer has.
+        got: u64,
+    },
+    /// A buffer that was created without the usage it is bound with.
+    #[error("{field} must be created with {usage}")]
+    BufferUsage {
+        /// Path of the field.
+        field: &'static str,
+        /// Name of the missing usage flag.
+        usage: &'static str,
+    },
+}
+
+/// What [`ShadowBindings::new`](crate::ShadowBindings::new) and [`compose`](crate::shader::compose) refuse.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum BindingsError {
+    /// A light's name becomes part of WGSL identifiers.
+    #[error(
+        "ShadowBindingsDescriptor::lights: name must be a lower-case WGSL identifier ([a-z][a-z0-9_]*, no `__`, no `_` or digit at the end), got {name:?}"
+    )]
+    Name {
+        /// The name asked for.
+        name: String,
+    },
+    /// Two lights of one name.
+    #[error("ShadowBindingsDescriptor::lights: names must differ, got {name:?} twice")]
+    DuplicateName {
+        /// The name.
+        name: String,
+    },
+    /// The group index exceeds what the device was created with.
+    #[error(
+        "ShadowBindingsDescriptor::group must be below the device's max_bind_groups = {maximum}, got {group}"
+    )]
+    Group {
+        /// The group asked for.
+        group: u32,
+        /// The device's limit.
+        maximum: u32,
+    },
+    /// More of a resource than one shader stage may use on this device.
+    #[error("ShadowBindingsDescriptor::lights need {needed} {limit}, and the device has {maximum}")]
+    OverDeviceLimit {
+        /// Name of the limit in `wgpu::Limits`.
+        limit: &'static str,
+        /// What the set needs.
+        needed: u32,
+        /// What the device was created with.
+        maximum: u32,
+    },
+    /// A module name that is not in the table.
+    #[error("there is no shader module named {name:?}")]
+    UnknownModule {
+        /// The name asked for.
+        name: String,
+    },
+}
+
+/// What [`DebugView`](crate::DebugView) refuses.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum DebugViewError {
+    /// A target format that a fragment shader cannot write floats to.
+    #[error("DebugView: the target must be a renderable float colour format, got {format:?}")]
+    Format {
+        /// The format asked for.
+        format: wgpu::TextureFormat,
+    },
+    /// A layer that the map does not have.
+    #[error("DebugView: layer must be below the map's {layers} layers, got {layer}")]
+    Layer {
+        /// The layer asked for.
+        layer: u32,
+        /// Layers of the map.
+        layers: u32,
+    },
+}

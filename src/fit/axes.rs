@@ -1,0 +1,180 @@
+//! World-fixed axes of a directional light, and boxes in them.
+
+use glam::{DMat3, DVec3};
+
+use crate::Aabb;
+
+/// Right-handed orthonormal axes of light space in world directions: x right, y up, z *toward* the light.
+///
+/// They depend on the light's direction and on the world's up axis alone, never on a camera, so that texels stay where they are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightAxes {
+    /// Rows are right, up and toward-light: `light_from_world * v` gives light coordinates of a world direction.
+    pub light_from_world: DMat3,
+}
+
+/// Cosine of the angle between light and up axis beyond which the up axis no longer orients the map.
+///
+/// Below it the x axis is horizontal, so that ground seen under a grazing sun is a thin rectangle along x. Above it (within
+/// 26 degrees of the zenith) every roll sees the ground alike, and the axes follow the world's own, along which ground and
+/// walls tend to be cut.
+const UP_COSINE: f64 = 0.9;
+
+impl LightAxes {
+    /// Axes for a light that shines along `direction_world` (any length but zero; finite), in a world whose up axis is `up_world`.
+    pub fn new(direction_world: DVec3, up_world: DVec3) -> Self {
+        let toward_light = -scaled_unit(direction_world);
+        let up = scaled_unit(up_world);
+        let reference = if toward_light.dot(up).abs() < UP_COSINE {
+            up
+        } else {
+            horizontal_reference(up)
+        };
+        let right = reference.cross(toward_light).normalize();
+        let map_up = toward_light.cross(right);
+        Self {
+            light_from_world: DMat3::from_cols(right, map_up, toward_light).transpose(),
+        }
+    }
+
+    /// World direction of the light's x axis.
+    pub fn right(&self) -> DVec3 {
+        self.light_from_world.row(0)
+    }
+
+    /// World direction of the light's y axis.
+    pub fn up(&self) -> DVec3 {
+        self.light_from_world.row(1)
+    }
+
+    /// World direction toward the light.
+    pub fn toward_light(&self) -> DVec3 {
+        self.light_from_world.row(2)
+    }
+
+    /// The box in absolute light space of a render-space box seen from `origin`.
+    pub(crate) fn light_box(&self, bounds: &Aabb, origin: DVec3) -> LightBox {
+        let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+        let center = self.light_from_world * (origin + (min + max) * 0.5);
+        let half = (max - min) * 0.5;
+        let rows = self.light_from_world;
+        let extent = DVec3::new(
+            rows.row(0).abs().dot(half),
+            rows.row(1).abs().dot(half),
+            rows.row(2).abs().dot(half),
+        );
+        LightBox {
+            min: center - extent,
+            max: center + extent,
+        }
+    }
+}
+
+/// Unit vector of `v`, also where its squared length would overflow or vanish.
+fn scaled_unit(v: DVec3) -> DVec3 {
+    (v / v.abs().max_element()).normalize()
+}
+
+/// The world axis that is most nearly perpendicular to `up`; x where two are equal.
+fn horizontal_reference(up: DVec3) -> DVec3 {
+    let a = up.abs();
+    let axis = if a.x <= a.y && a.x <= a.z {
+        DVec3::X
+    } else if a.z <= a.y {
+        DVec3::Z
+    } else {
+        DVec3::Y
+    };
+    axis - up * axis.dot(up)
+}
+
+/// An interval box in absolute light space (f64; z grows toward the light).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LightBox {
+    pub min: DVec3,
+    pub max: DVec3,
+}
+
+impl LightBox {
+    pub const EMPTY: Self = Self {
+        min: DVec3::INFINITY,
+        max: DVec3::NEG_INFINITY,
+    };
+
+    pub fn is_empty(&self) -> bool {
+        self.min.cmpgt(self.max).any()
+    }
+
+    pub fn include(&mut self, point: DVec3) {
+        self.min = self.min.min(point);
+        self.max = self.max.max(point);
+    }
+
+    pub fn union(&mut self, other: &Self) {
+        self.min = self.min.min(other.min);
+        self.max = self.max.max(other.max);
+    }
+
+    /// Do the two boxes overlap as seen from the light (xy only; touching counts)?
+    pub fn overlaps_xy(&self, other: &Self) -> bool {
+        self.min.x <= other.max.x
+            && other.min.x <= self.max.x
+            && self.min.y <= other.max.y
+            && other.min.y <= self.max.y
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Orthonormal to 4 ulp, right-handed and toward the light, for every axis and a hair off it.
+    #[test]
+    fn axes_are_orthonormal_for_every_direction() {
+        let hair = 1e-7;
+        let mut directions = Vec::new();
+        for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+            for sign in [-1.0, 1.0] {
+                directions.push(axis * sign);
+                for off in [DVec3::X, DVec3::Y, DVec3::Z] {
+                    directions.push(axis * sign + off * hair);
+                    directions.push(axis * sign - off * hair);
+                }
+            }
+        }
+        directions.push(DVec3::splat(1e-200));
+        directions.push(DVec3::new(1e200, -1e200, 3e199));
+        for up in [DVec3::Y, DVec3::Z, DVec3::new(1.0, 1.0, 1.0)] {
+            for &direction in &directions {
+                let axes = LightAxes::new(direction, up);
+                let m = axes.light_from_world;
+                let gram = m * m.transpose();
+                let error = (gram - DMat3::IDENTITY).abs_diff_eq(DMat3::ZERO, 4.0 * f64::EPSILON);
+                assert!(error, "{direction} {up}: {gram}");
+                assert!((m.determinant() - 1.0).abs() <= 4.0 * f64::EPSILON);
+                let unit = scaled_unit(direction);
+                assert!((axes.toward_light() + unit).length() <= 4.0 * f64::EPSILON);
+            }
+        }
+    }
+
+    /// The interval box equals the box of the eight transformed corners.
+    #[test]
+    fn light_box_is_the_box_of_the_corners() {
+        let axes = LightAxes::new(DVec3::new(0.3, -0.7, 0.2), DVec3::Y);
+        let bounds = Aabb::new(
+            glam::Vec3::new(-1.0, 2.0, 3.0),
+            glam::Vec3::new(4.0, 2.5, 9.0),
+        );
+        let origin = DVec3::new(1e5, -2e5, 3e5);
+        let fast = axes.light_box(&bounds, origin);
+        let mut exact = LightBox::EMPTY;
+        for corner in 0..8 {
+            exact.include(axes.light_from_world * (origin + bounds.corner(corner).as_dvec3()));
+        }
+        // magnitude 4e5, three products and sums: 8 ulps of f64
+        let tolerance = 8.0 * f64::EPSILON * 4e5;
+        assert!(fast.min.abs_diff_eq(exact.min, tolerance));
+        assert!(fast.max.abs_diff_eq(exact.max, tolerance));
+    }
+}

@@ -1,0 +1,164 @@
+//! The engine's camera, taken as any pair of matrices, as half-spaces and as depth along the view.
+
+use glam::{DMat4, DVec3, DVec4, Mat4};
+
+use crate::ShadowError;
+use crate::fit::region::{HalfSpace, HalfSpaces};
+
+/// The camera whose picture the shadows are for.
+///
+/// Any projection with WebGPU's clip volume (`-w ≤ x, y ≤ w`, `0 ≤ z ≤ w`) will do: perspective with finite or infinite far
+/// plane, forward or reversed depth, off-centre, orthographic. Only the volume counts, not the depth convention.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraView {
+    /// View space from render space; a rigid transform in all but exotic engines.
+    pub view_from_render: Mat4,
+    /// Clip space from view space. An orthographic camera is taken to look along -z of view space; a perspective one looks
+    /// where its w grows.
+    pub clip_from_view: Mat4,
+    /// Distance along the view, in world units, beyond which receivers are left lit. `f32::INFINITY` (the default of
+    /// [`CameraView::new`]) covers all that the projection and the receivers' bounds let one see. Too large a value costs
+    /// resolution; too small a value ends the shadows in plain sight.
+    pub max_distance: f32,
+}
+
+impl CameraView {
+    /// A camera with no distance limit of its own.
+    pub const fn new(view_from_render: Mat4, clip_from_view: Mat4) -> Self {
+        Self {
+            view_from_render,
+            clip_from_view,
+            max_distance: f32::INFINITY,
+        }
+    }
+
+    /// The same camera with shadows out to `max_distance` world units along the view.
+    pub const fn with_max_distance(self, max_distance: f32) -> Self {
+        Self {
+            max_distance,
+            ..self
+        }
+    }
+
+    /// The visible volume in render space.
+    pub(crate) fn frustum(&self) -> Result<CameraFrustum, ShadowError> {
+        let view_from_render = checked(
+            &self.view_from_render,
+            "DirectionalFrame::coverage.view_from_render",
+        )?;
+        let clip_from_view = checked(
+            &self.clip_from_view,
+            "DirectionalFrame::coverage.clip_from_view",
+        )?;
+        if !(self.max_distance > 0.0) {
+            return Err(ShadowError::OutOfRange {
+                field: "DirectionalFrame::coverage.max_distance",
+                rule: "above 0 (infinity allowed)",
+                value: self.max_distance.to_string(),
+            });
+        }
+        let clip_from_render = clip_from_view * view_from_render;
+        let rows = [0, 1, 2, 3].map(|row| clip_from_render.row(row));
+        let sides = [
+            rows[3] + rows[0],
+            rows[3] - rows[0],
+            rows[3] + rows[1],
+            rows[3] - rows[1],
+            rows[2],
+            rows[3] - rows[2],
+        ];
+        let mut planes = HalfSpaces::default();
+        for side in sides {
+            // An infinite far plane has no direction and keeps everything: w - z is a constant, or vanishes at this scale.
+            let scale = rows[3].truncate().length() + side.w.abs();
+            if side.truncate().length() > 1e-12 * scale {
+                planes.push(HalfSpace::from_homogeneous(side));
+            }
+        }
+        let w_row = clip_from_view.row(3);
+        let forward_view = if w_row.truncate().length() > 1e-12 * w_row.w.abs() {
+            w_row.truncate().normalize()
+        } else {
+            DVec3::NEG_Z
+        };
+        let render_from_view = view_from_render.inverse();
+        let eye = render_from_view.transform_point3(DVec3::ZERO);
+        let forward = render_from_view.transform_vector3(forward_view).normalize();
+        if !(eye.is_finite() && forward.is_finite()) {
+            return Err(camera_matrix(
+                "DirectionalFrame::coverage.view_from_render",
+                &self.view_from_render,
+            ));
+        }
+        if self.max_distance.is_finite() {
+            planes.push(HalfSpace {
+                normal: -forward,
+                offset: forward.dot(eye) + f64::from(self.max_distance),
+            });
+        }
+        Ok(CameraFrustum {
+            planes,
+            eye,
+            forward,
+        })
+    }
+}
+
+/// What a camera sees, in render space.
+pub(crate) struct CameraFrustum {
+    pub planes: HalfSpaces,
+    eye: DVec3,
+    forward: DVec3,
+}
+
+impl CameraFrustum {
+    /// Depth along the view in world units.
+    pub fn depth(&self, point_render: DVec3) -> f64 {
+        self.forward.dot(point_render - self.eye)
+    }
+
+    /// The part of the volume between two depths along the view.
+    pub fn slice(&self, depth_near: f64, depth_far: f64) -> HalfSpaces {
+        let mut planes = self.planes;
+        let at_eye = self.forward.dot(self.eye);
+        planes.push(HalfSpace {
+            normal: self.forward,
+            offset: -at_eye - depth_near,
+        });
+        planes.push(HalfSpace {
+            normal: -self.forward,
+            offset: at_eye + depth_far,
+        });
+        planes
+    }
+}
+
+fn checked(matrix: &Mat4, field: &'static str) -> Result<DMat4, ShadowError> {
+    let matrix_double = matrix.as_dmat4();
+    // The determinant's own magnitude says nothing (a scale of 1e-5 gives 1e-20); that the inverse is finite does.
+    if matrix.is_finite()
+        && matrix_double.determinant() != 0.0
+        && matrix_double.inverse().is_finite()
+    {
+        Ok(matrix_double)
+    } else {
+        Err(camera_matrix(field, matrix))
+    }
+}
+
+fn camera_matrix(field: &'static str, matrix: &Mat4) -> ShadowError {
+    ShadowError::CameraMatrix {
+        field,
+        value: matrix.to_string(),
+    }
+}
+
+impl HalfSpace {
+    fn from_homogeneous(plane: DVec4) -> Self {
+        let length = plane.truncate().length();
+        Self {
+            normal: plane.truncate() / length,
+            offset: plane.w / length,
+        }
+    }
+}

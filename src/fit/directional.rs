@@ -1,0 +1,269 @@
+//! The fit of a directional light: what can be seen receiving, and every caster that can reach it.
+
+use glam::DVec3;
+
+use crate::fit::axes::{LightAxes, LightBox};
+use crate::fit::camera::CameraFrustum;
+use crate::fit::split::CascadeSplit;
+use crate::fit::window::{OrthoWindow, WindowRequest};
+use crate::{Aabb, ShadowError};
+
+/// Most cascades that one light may have.
+pub(crate) const MAX_CASCADES: usize = 8;
+
+/// Where receivers count.
+pub(crate) enum Region {
+    /// What a camera sees of them.
+    Camera(CameraFrustum),
+    /// All that lies in a given box; the window then is the box, whatever the casters.
+    Bounds(Aabb),
+}
+
+/// What a frame brings.
+pub(crate) struct FitInput<'a> {
+    pub axes: LightAxes,
+    pub origin: DVec3,
+    pub region: Region,
+    /// Bounds of casters, which receive too.
+    pub casters: &'a [Aabb],
+    /// Bounds of surfaces that only receive.
+    pub receivers: &'a [Aabb],
+}
+
+/// What the light was made with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FitLimits {
+    pub map_size: u32,
+    pub margin_texels: u32,
+    pub cascades: usize,
+    pub split: CascadeSplit,
+}
+
+/// A caster as the fit sees it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CasterBounds {
+    pub light: LightBox,
+    /// False where no visible receiver lies behind the caster: a ground plane below everything shadows nothing.
+    pub can_shadow: bool,
+}
+
+/// The windows of a light, kept from frame to frame for their hysteresis.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct DirectionalFit {
+    /// One per cascade; none for a cascade that nothing can shadow.
+    pub windows: [Option<OrthoWindow>; MAX_CASCADES],
+    held: [Option<OrthoWindow>; MAX_CASCADES],
+}
+
+/// Visible receivers: their bounds in render space and their depths along the view.
+struct VisibleReceivers {
+    render_min: DVec3,
+    render_max: DVec3,
+    depth_near: f64,
+    depth_far: f64,
+}
+
+impl DirectionalFit {
+    /// The windows for this frame. `casters` is filled with one entry per caster, in order. On an error, `self` is unchanged.
+    pub fn fit(
+        &self,
+        input: &FitInput<'_>,
+        limits: &FitLimits,
+        casters: &mut Vec<CasterBounds>,
+    ) -> Result<Self, ShadowError> {
+        casters.clear();
+        let visible = visible_receivers(input);
+        casters.extend(input.casters.iter().map(|bounds| CasterBounds {
+            light: input.axes.light_box(bounds, input.origin),
+            can_shadow: !bounds.is_empty()
+                && can_shadow(bounds, &visible, input.axes.toward_light()),
+        }));
+        let mut next = self.clone();
+        for cascade in 0..limits.cascades {
+            let required = self.required_box(input, limits, &visible, cascade);
+            let window = required.and_then(|required| {
+                fit_window(
+                    input,
+                    limits,
+                    casters,
+                    required,
+                    self.held[cascade].as_ref(),
+                )
+            });
+            if let Some(window) = window {
+                check_representable(&window, input)?;
+                next.held[cascade] = Some(window);
+            }
+            next.windows[cascade] = window;
+        }
+        Ok(next)
+    }
+
+    /// Light-space box of the receivers that cascade `cascade` is for; none where there are none.
+    fn required_box(
+        &self,
+        input: &FitInput<'_>,
+        limits: &FitLimits,
+        visible: &VisibleReceivers,
+        cascade: usize,
+    ) -> Option<LightBox> {
+        let frustum = match &input.region {
+            Region::Bounds(bounds) => {
+                return (!bounds.is_empty())
+                    .then(|| input.axes.light_box(bounds, input.origin))
+                    .filter(|_| cascade == 0);
+            }
+            Region::Camera(frustum) => frustum,
+        };
+        if !(visible.depth_near <= visible.depth_far) {
+            return None;
+        }
+        let end = |index| {
+            limits.split.depth(
+                index,
+                limits.cascades,
+                visible.depth_near,
+                visible.depth_far,
+            )
+        };
+        let slice = if limits.cascades == 1 {
+            frustum.planes
+        } else {
+            frustum.slice(end(cascade), end(cascade + 1))
+        };
+        let mut required = LightBox::EMPTY;
+        for bounds in input.casters.iter().chain(input.receivers) {
+            slice.visit_vertices(bounds, |vertex| {
+                required.include(input.axes.light_from_world * (input.origin + vertex));
+            });
+        }
+        (!required.is_empty()).then_some(required)
+    }
+}
+
+/// What of the receivers can be seen. In a given box, all of the box counts as seen.
+fn visible_receivers(input: &FitInput<'_>) -> VisibleReceivers {
+    let mut visible = VisibleReceivers {
+        render_min: DVec3::INFINITY,
+        render_max: DVec3::NEG_INFINITY,
+        depth_near: f64::INFINITY,
+        depth_far: f64::NEG_INFINITY,
+    };
+    match &input.region {
+        Region::Bounds(bounds) => {
+            visible.render_min = bounds.min.as_dvec3();
+            visible.render_max = bounds.max.as_dvec3();
+        }
+        Region::Camera(frustum) => {
+            for bounds in input.casters.iter().chain(input.receivers) {
+                frustum.planes.visit_vertices(bounds, |vertex| {
+                    visible.render_min = visible.render_min.min(vertex);
+                    visible.render_max = visible.render_max.max(vertex);
+                    let depth = frustum.depth(vertex);
+                    visible.depth_near = visible.depth_near.min(depth);
+                    visible.depth_far = visible.depth_far.max(depth);
+                });
+            }
+        }
+    }
+    visible
+}
+
+/// Can a shadow of `caster` fall on anything visible? A point is shadowed by a point of the caster further along the way to
+/// the light, so on each world axis the caster must reach beyond the receivers' near end in the light's direction. A flat
+/// floor under everything else fails this (it reaches just as far as the lowest receiver: itself), and neither widens the
+/// window nor is drawn.
+fn can_shadow(caster: &Aabb, receivers: &VisibleReceivers, toward_light: DVec3) -> bool {
+    let (low, high) = (caster.min.as_dvec3(), caster.max.as_dvec3());
+    (0..3).all(|axis| {
+        let toward = toward_light[axis];
+        if toward > 0.0 {
+            high[axis] > receivers.render_min[axis]
+        } else if toward < 0.0 {
+            low[axis] < receivers.render_max[axis]
+        } else {
+            high[axis] >= receivers.render_min[axis] && low[axis] <= receivers.render_max[axis]
+        }
+    })
+}
+
+/// The window for receivers in `required`: seen from the light, what both receivers and casters cover.
+fn fit_window(
+    input: &FitInput<'_>,
+    limits: &FitLimits,
+    casters: &[CasterBounds],
+    required: LightBox,
+    held: Option<&OrthoWindow>,
+) -> Option<OrthoWindow> {
+    let reaches = |caster: &&CasterBounds| {
+        caster.can_shadow
+            && caster.light.max.z > required.min.z
+            && caster.light.overlaps_xy(&required)
+    };
+    let mut shadows = LightBox::EMPTY;
+    for caster in casters.iter().filter(reaches) {
+        shadows.union(&caster.light);
+    }
+    if shadows.is_empty() {
+        return None;
+    }
+    let mut covered = required;
+    if matches!(input.region, Region::Camera(_)) {
+        covered.min = required.min.max(shadows.min).with_z(required.min.z);
+        covered.max = required.max.min(shadows.max);
+    }
+    covered.max.z = shadows.max.z.max(required.min.z);
+    let mut request = WindowRequest {
+        required: covered,
+        map_size: limits.map_size,
+        margin_texels: limits.margin_texels,
+        texel_floor: texel_floor(input, &covered),
+    };
+    let mut window = OrthoWindow::fit(&request, held);
+    // The rounded window is larger than what was asked for: casters that touch only its rim must lie in its depth range too.
+    let nearest = casters
+        .iter()
+        .filter(|caster| caster.can_shadow && window.holds_part_of(&caster.light))
+        .fold(covered.max.z, |near, caster| near.max(caster.light.max.z));
+    if nearest > window.near {
+        request.required.max.z = nearest;
+        let deepened = OrthoWindow::fit(&request, held);
+        window.far = deepened.far;
+        window.near = deepened.near;
+    }
+    Some(window)
+}
+
+/// Four ulps of f32 at the farthest render coordinate of the covered box: finer texels than positions would resolve nothing.
+fn texel_floor(input: &FitInput<'_>, covered: &LightBox) -> f64 {
+    let origin_light = input.axes.light_from_world * input.origin;
+    let reach = (covered.min - origin_light)
+        .abs()
+        .max((covered.max - origin_light).abs())
+        .max_element();
+    4.0 * f64::from(f32::EPSILON) * reach.max(f64::from(f32::MIN_POSITIVE) * 1e8)
+}
+
+fn check_representable(window: &OrthoWindow, input: &FitInput<'_>) -> Result<(), ShadowError> {
+    let extent = (window.max() - window.min)
+        .max_element()
+        .max(window.depth_range());
+    let origin_light = input.axes.light_from_world * input.origin;
+    let middle = (window.min + window.max()) * 0.5;
+    let distance = (middle.extend(window.far) - origin_light)
+        .abs()
+        .max_element();
+    // The square must fit as well: matrices hold reciprocals and products of these.
+    let largest = f64::from(f32::MAX).sqrt();
+    let smallest = f64::from(f32::MIN_POSITIVE).sqrt();
+    if extent.max(distance) < largest
+        && window.texel.min_element().min(window.depth_range()) > smallest
+    {
+        Ok(())
+    } else {
+        Err(ShadowError::ViewNotRepresentable {
+            extent_world: extent,
+            distance_world: distance,
+        })
+    }
+}

@@ -1,0 +1,29 @@
+//! Ground floor: where a light must look, as pure f64 mathematics that returns values and knows no wgpu.
+//!
+//! ```text
+//! camera.rs       the engine's camera as half-spaces and depth along the view
+//! region.rs       exact vertices of (convex region ∩ box)
+//! axes.rs         world-fixed light axes, boxes in light space
+//! ladder.rs       quantised extents with hysteresis
+//! window.rs       the orthographic window of one cascade, snapped to whole texels
+//! split.rs        where one cascade ends and the next begins
+//! directional.rs  all of it put together for a sun
+//! view.rs         ShadowView: the value that the upper floors render and sample with
+//! ```
+
+mod axes;
+mod camera;
+mod directional;
+mod ladder;
+mod region;
+mod split;
+mod view;
+mod window;
+
+pub use axes::LightAxes;
+pub(crate) use axes::LightBox;
+pub use camera::CameraView;
+pub(crate) use directional::{CasterBounds, DirectionalFit, FitInput, FitLimits, Region};
+pub use split::CascadeSplit;
+pub use view::ShadowView;
+pub(crate) use view::ViewPlacement;

@@ -1,0 +1,47 @@
+//! Where along the view one cascade ends and the next begins.
+
+/// How the covered depth is divided among the cascades of a directional light.
+///
+/// Depths run from the nearest visible receiver (not the camera's near plane) to the farthest one or the camera's distance
+/// limit. Sources: Engel 2006 (*Cascaded Shadow Maps*), Zhang et al. 2006 (*Parallel-Split Shadow Maps*, GPU Gems 3 ch. 10).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum CascadeSplit {
+    /// Equal depths: wastes texels near the camera.
+    Uniform,
+    /// Equal ratios: equal texels per pixel everywhere. Right whenever the near end is a receiver, and the default.
+    Logarithmic,
+    /// `lambda` (0..=1) of the way from uniform to logarithmic: for scenes with a single object close to the camera.
+    Practical {
+        /// 0 is uniform, 1 logarithmic.
+        lambda: f32,
+    },
+}
+
+impl CascadeSplit {
+    /// Depth at which cascade `index` of `count` begins (`index == count` is the far end).
+    pub(crate) fn depth(self, index: usize, count: usize, near: f64, far: f64) -> f64 {
+        if index == 0 {
+            return near;
+        }
+        if index == count {
+            return far;
+        }
+        let share = index as f64 / count as f64;
+        let uniform = near + (far - near) * share;
+        // Equal ratios need a positive start; depths of an orthographic camera may begin behind it.
+        let logarithmic = if near > 0.0 {
+            near * (far / near).powf(share)
+        } else {
+            uniform
+        };
+        match self {
+            Self::Uniform => uniform,
+            Self::Logarithmic => logarithmic,
+            Self::Practical { lambda } => {
+                let lambda = f64::from(lambda);
+                lambda * logarithmic + (1.0 - lambda) * uniform
+            }
+        }
+    }
+}

@@ -1,0 +1,364 @@
+//! One bind group for a set of lights, and the WGSL for exactly that set.
+
+use std::fmt::Write;
+
+use crate::error::BindingsError;
+use crate::receive::filter::FilterSampler;
+use crate::receive::{Sampling, ShadowViewUniform};
+use crate::shader;
+
+/// What a light gives its receivers: its map, its uniforms, and how to look them up.
+///
+/// Made by the lights' `source` methods; textures and buffers stay the light's own, so a bind group outlives every frame.
+#[derive(Clone, Copy, Debug)]
+pub struct ShadowSource<'a> {
+    pub(crate) receiver: Receiver<'a>,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Receiver<'a> {
+    pub map: &'a wgpu::TextureView,
+    pub views: &'a wgpu::Buffer,
+    pub view_count: u32,
+    pub sampling: Sampling,
+}
+
+/// What a [`ShadowBindings`] is made of.
+#[derive(Clone, Copy, Debug)]
+pub struct ShadowBindingsDescriptor<'a> {
+    /// Label of layout and bind group.
+    pub label: wgpu::Label<'a>,
+    /// Index of the bind group in the engine's pipelines. Default 1.
+    pub group: u32,
+    /// Stages that call the functions. Default `FRAGMENT`; add `COMPUTE` for volumetric light.
+    pub visibility: wgpu::ShaderStages,
+    /// The lights by name. A light named `sun` is asked through `shadow_sun(position, normal)`.
+    pub lights: &'a [(&'a str, ShadowSource<'a>)],
+}
+
+impl Default for ShadowBindingsDescriptor<'_> {
+    fn default() -> Self {
+        Self {
+            label: None,
+            group: 1,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            lights: &[],
+        }
+    }
+}
+
+/// A bind group with the maps of a set of lights, and the WGSL that asks them.
+///
+/// The WGSL has one function per light, `shadow_NAME(position: vec3<f32>, normal: vec3<f32>) -> f32`: visibility in [0, 1] of
+/// the light from `position` (render space) on a surface with geometric normal `normal` (unit length, on the side that is
+/// shaded); and `shadow_geometric_normal(position)`. Where the map says nothing, beyond its sides or its far plane, it is 1.
+#[derive(Debug)]
+pub struct ShadowBindings {
+    layout: wgpu::BindGroupLayout,
+    bind_group: wgpu::BindGroup,
+    group: u32,
+    wgsl: String,
+}
+
+impl ShadowBindings {
+    /// Makes layout, bind group and WGSL. Do this once for a set of lights; per frame there is nothing to update.
+    ///
+    /// # Errors
+    /// [`BindingsError`] for names that are not WGSL identifiers or not distinct, and for sets that exceed the device's limits.
+    pub fn new(
+        device: &wgpu::Device,
+        descriptor: &ShadowBindingsDescriptor<'_>,
+    ) -> Result<Self, BindingsError> {
+        check_names(descriptor.lights)?;
+        let samplers = used_samplers(descriptor.lights);
+        check_limits(device, descriptor, &samplers)?;
+        let layout = create_layout(device, descriptor, &samplers);
+        let bind_group = create_bind_group(device, descriptor, &samplers, &layout);
+        Ok(Self {
+            layout,
+            bind_group,
+            group: descriptor.group,
+            wgsl: emit(descriptor, &samplers)?,
+        })
+    }
+
+    /// Layout for the engine's pipeline layouts, at index [`ShadowBindings::group`].
+    pub fn layout(&self) -> &wgpu::BindGroupLayout {
+        &self.layout
+    }
+
+    /// The bind group to set while surfaces are shaded.
+    pub fn bind_group(&self) -> &wgpu::BindGroup {
+        &self.bind_group
+    }
+
+    /// Index of the bind group.
+    pub fn group(&self) -> u32 {
+        self.group
+    }
+
+    /// WGSL for exactly this set, without directives: put it before or after the engine's own.
+    pub fn wgsl(&self) -> &str {
+        &self.wgsl
+    }
+}
+
+type Lights<'a> = [(&'a str, ShadowSource<'a>)];
+
+fn check_names(lights: &Lights<'_>) -> Result<(), BindingsError> {
+    for (index, (name, _)) in lights.iter().enumerate() {
+        let starts = name.starts_with(|c: char| c.is_ascii_lowercase());
+        let body = name
+            .chars()
+            .all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
+        let ends = name.ends_with(|c: char| c.is_ascii_lowercase());
+        // The library's own function names, which a light's must not shadow.
+        let taken = shader::MODULES
+            .iter()
+            .any(|module| module.source.contains(&format!("fn shadow_{name}(")));
+        if !(starts && body && ends) || name.contains("__") || taken {
+            return Err(BindingsError::Name {
+                name: (*name).to_owned(),
+            });
+        }
+        if lights[..index].iter().any(|(other, _)| other == name) {
+            return Err(BindingsError::DuplicateName {
+                name: (*name).to_owned(),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Samplers that the set's filters take, in binding order.
+fn used_samplers(lights: &Lights<'_>) -> Vec<FilterSampler> {
+    [FilterSampler::Comparison, FilterSampler::Point]
+        .into_iter()
+        .filter(|&sampler| {
+            lights
+                .iter()
+                .any(|(_, source)| source.receiver.sampling.filter.wgsl().1 == sampler)
+        })
+        .collect()
+}
+
+fn check_limits(
+    device: &wgpu::Device,
+    descriptor: &ShadowBindingsDescriptor<'_>,
+    samplers: &[FilterSampler],
+) -> Result<(), BindingsError> {
+    let limits = device.limits();
+    if descriptor.group >= limits.max_bind_groups {
+        return Err(BindingsError::Group {
+            group: descriptor.group,
+            maximum: limits.max_bind_groups,
+        });
+    }
+    let lights = descriptor.lights.len() as u32;
+    let needs = [
+        (
+            "max_sampled_textures_per_shader_stage",
+            lights,
+            limits.max_sampled_textures_per_shader_stage,
+        ),
+        (
+            "max_uniform_buffers_per_shader_stage",
+            lights,
+            limits.max_uniform_buffers_per_shader_stage,
+        ),
+        (
+            "max_samplers_per_shader_stage",
+            samplers.len() as u32,
+            limits.max_samplers_per_shader_stage,
+        ),
+        (
+            "max_bindings_per_bind_group",
+            2 * lights + samplers.len() as u32,
+            limits.max_bindings_per_bind_group,
+        ),
+    ];
+    match needs
+        .into_iter()
+        .find(|(_, needed, maximum)| needed > maximum)
+    {
+        None => Ok(()),
+        Some((limit, needed, maximum)) => Err(BindingsError::OverDeviceLimit {
+            limit,
+            needed,
+            maximum,
+        }),
+    }
+}
+
+/// Bindings are numbered: samplers first, then uniforms and map of each light.
+fn views_binding(samplers: &[FilterSampler], light: usize) -> u32 {
+    (samplers.len() + 2 * light) as u32
+}
+
+fn create_layout(
+    device: &wgpu::Device,
+    descriptor: &ShadowBindingsDescriptor<'_>,
+    samplers: &[FilterSampler],
+) -> wgpu::BindGroupLayout {
+    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: descriptor.visibility,
+        ty,
+        count: None,
+    };
+    let mut entries: Vec<_> = samplers
+        .iter()
+        .enumerate()
+        .map(|(binding, sampler)| {
+            let ty = match sampler {
+                FilterSampler::Comparison => wgpu::SamplerBindingType::Comparison,
+                FilterSampler::Point | FilterSampler::None => {
+                    wgpu::SamplerBindingType::NonFiltering
+                }
+            };
+            entry(binding as u32, wgpu::BindingType::Sampler(ty))
+        })
+        .collect();
+    for (light, (_, source)) in descriptor.lights.iter().enumerate() {
+        let bytes = u64::from(source.receiver.view_count) * size_of::<ShadowViewUniform>() as u64;
+        let views = views_binding(samplers, light);
+        entries.push(entry(
+            views,
+            wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Uniform,
+                has_dynamic_offset: false,
+                min_binding_size: wgpu::BufferSize::new(bytes),
+            },
+        ));
+        entries.push(entry(
+            views + 1,
+            wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Depth,
+                view_dimension: wgpu::TextureViewDimension::D2Array,
+                multisampled: false,
+            },
+        ));
+    }
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: descriptor.label.or(Some("shadow bindings")),
+        entries: &entries,
+    })
+}
+
+fn create_bind_group(
+    device: &wgpu::Device,
+    descriptor: &ShadowBindingsDescriptor<'_>,
+    samplers: &[FilterSampler],
+    layout: &wgpu::BindGroupLayout,
+) -> wgpu::BindGroup {
+    let made: Vec<_> = samplers
+        .iter()
+        .map(|sampler| create_sampler(device, *sampler))
+        .collect();
+    let mut entries: Vec<_> = made
+        .iter()
+        .enumerate()
+        .map(|(binding, sampler)| wgpu::BindGroupEntry {
+            binding: binding as u32,
+            resource: wgpu::BindingResource::Sampler(sampler),
+        })
+        .collect();
+    for (light, (_, source)) in descriptor.lights.iter().enumerate() {
+        let views = views_binding(samplers, light);
+        entries.push(wgpu::BindGroupEntry {
+            binding: views,
+            resource: source.receiver.views.as_entire_binding(),
+        });
+        entries.push(wgpu::BindGroupEntry {
+            binding: views + 1,
+            resource: wgpu::BindingResource::TextureView(source.receiver.map),
+        });
+    }
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: descriptor.label.or(Some("shadow bindings")),
+        layout,
+        entries: &entries,
+    })
+}
+
+fn create_sampler(device: &wgpu::Device, sampler: FilterSampler) -> wgpu::Sampler {
+    let comparison = sampler == FilterSampler::Comparison;
+    let filter = if comparison {
+        wgpu::FilterMode::Linear
+    } else {
+        wgpu::FilterMode::Nearest
+    };
+    device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("shadow sampler"),
+        mag_filter: filter,
+        min_filter: filter,
+        // Reversed depth: lit where the receiver is at least as near as what the map holds.
+        compare: comparison.then_some(wgpu::CompareFunction::GreaterEqual),
+        ..Default::default()
+    })
+}
+
+/// The modules in use, the group's number, the bindings, and one function per light.
+fn emit(
+    descriptor: &ShadowBindingsDescriptor<'_>,
+    samplers: &[FilterSampler],
+) -> Result<String, BindingsError> {
+    let mut modules = vec!["normal"];
+    for (_, source) in descriptor.lights {
+        let sampling = source.receiver.sampling;
+        modules.push(sampling.filter.wgsl().0);
+        modules.push(sampling.bias.scheme(sampling.filter).module());
+    }
+    let mut text = shader::compose(&modules)?;
+    let mut line = |arguments: std::fmt::Arguments<'_>| {
+        // Writing to a String does not fail.
+        let _ = text.write_fmt(arguments);
+    };
+    line(format_args!(
+        "\nconst SHADOW_GROUP: u32 = {}u;\n",
+        descriptor.group
+    ));
+    for (binding, sampler) in samplers.iter().enumerate() {
+        let (name, ty) = sampler_names(*sampler);
+        line(format_args!(
+            "@group(SHADOW_GROUP) @binding({binding}) var {name}: {ty};\n"
+        ));
+    }
+    for (light, (name, source)) in descriptor.lights.iter().enumerate() {
+        let views = views_binding(samplers, light);
+        let count = source.receiver.view_count;
+        let sampling = source.receiver.sampling;
+        let make_receiver = sampling.bias.scheme(sampling.filter).function();
+        let (filter, sampler) = sampling.filter.wgsl();
+        let arguments = match sampler {
+            FilterSampler::None => String::new(),
+            used => format!("{}, ", sampler_names(used).0),
+        };
+        line(format_args!(
+            "
+@group(SHADOW_GROUP) @binding({views}) var<uniform> shadow_views_{name}: array<ShadowView, {count}>;
+@group(SHADOW_GROUP) @binding({map}) var shadow_map_{name}: texture_depth_2d_array;
+
+// Visibility of the light in [0, 1], by the first view that holds the whole kernel; 1 where none does.
+fn shadow_{name}(position: vec3<f32>, normal: vec3<f32>) -> f32 {{
+    for (var i = 0u; i < {count}u; i++) {{
+        let receiver = {make_receiver}(shadow_views_{name}[i], position, normal);
+        if receiver.inside {{
+            return shadow_{filter}(shadow_map_{name}, {arguments}receiver);
+        }}
+    }}
+    return 1.0;
+}}
+",
+            map = views + 1,
+        ));
+    }
+    Ok(text)
+}
+
+fn sampler_names(sampler: FilterSampler) -> (&'static str, &'static str) {
+    match sampler {
+        FilterSampler::Comparison => ("shadow_comparison_sampler", "sampler_comparison"),
+        FilterSampler::Point | FilterSampler::None => ("shadow_point_sampler", "sampler"),
+    }
+}

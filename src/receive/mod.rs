@@ -1,0 +1,22 @@
+//! Top floor: what a receiver asks a map, and how the engine's shader reaches it.
+//!
+//! ```text
+//! filter.rs     which texels count, and how much
+//! bias.rs       how a receiver is kept from shadowing itself
+//! uniforms.rs   the layout that Rust and WGSL share
+//! reference.rs  the WGSL's arithmetic once more in f64
+//! bindings.rs   one bind group for a set of lights, and the WGSL for exactly that set
+//! ```
+
+mod bias;
+mod bindings;
+mod filter;
+pub mod reference;
+mod uniforms;
+
+pub use bias::Bias;
+pub(crate) use bindings::Receiver;
+pub use bindings::{ShadowBindings, ShadowBindingsDescriptor, ShadowSource};
+pub use filter::Filter;
+pub use uniforms::ShadowViewUniform;
+pub(crate) use uniforms::{Sampling, view_uniform};

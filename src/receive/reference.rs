@@ -1,0 +1,199 @@
+//! The WGSL's arithmetic once more, in f64: what a lookup should return, given the texels that a map holds.
+//!
+//! For an engine's own tests, and for the library's: the device's result is compared with this. Kernels are written here as
+//! what they are, a bilinear comparison convolved with a row of integers, not as the shader's closed form.
+
+use glam::{DMat4, DVec2, DVec3, DVec4, Mat4, Vec3, Vec4};
+
+use crate::receive::bias::BiasScheme;
+use crate::receive::{Bias, Filter, ShadowViewUniform};
+
+/// One layer of a depth map as read back from the device: rows from the top, ndc depth.
+#[derive(Clone, Copy, Debug)]
+pub struct DepthLayer<'a> {
+    /// Texels per side.
+    pub size: u32,
+    /// `size * size` depths.
+    pub depths: &'a [f32],
+}
+
+impl DepthLayer<'_> {
+    /// Depth of a texel; beyond the sides, that of the nearest one inside, as the samplers clamp.
+    fn depth(&self, x: i64, y: i64) -> f64 {
+        let last = i64::from(self.size) - 1;
+        let index = y.clamp(0, last) * i64::from(self.size) + x.clamp(0, last);
+        f64::from(self.depths[index as usize])
+    }
+}
+
+/// Where a receiver stands in a map, as `ShadowReceiver` in `wgsl/view.wgsl`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Receiver {
+    /// Texel coordinates, origin top left, centres at halves.
+    pub texel: DVec2,
+    /// Reference depth there, bias included.
+    pub depth: f64,
+    /// Change of the reference depth per texel.
+    pub gradient: DVec2,
+    /// False where the map says nothing of this place; visibility is 1 there.
+    pub inside: bool,
+}
+
+/// The receiver at `position` (render space) with geometric normal `normal`.
+pub fn receiver(
+    view: &ShadowViewUniform,
+    filter: Filter,
+    bias: Bias,
+    position: DVec3,
+    normal: DVec3,
+) -> Receiver {
+    let relative = position - Vec3::from_array(view.anchor).as_dvec3();
+    let lateral_error = f64::from(view.lateral_error);
+    let depth_error = f64::from(view.depth_error);
+    let across = plane_across_map(view, relative, normal);
+    let steepness = across.x.abs() + across.y.abs();
+    match bias.scheme(filter) {
+        BiasScheme::Plane => {
+            let offset =
+                f64::from(view.offset_texels) * clip_w(view, relative).max(0.0) * steepness;
+            let lifted = relative + normal * offset;
+            let plane = plane_across_map(view, lifted, normal);
+            if plane.z.abs() > 0.0 {
+                let gradient =
+                    (-plane.truncate() / plane.z).clamp(DVec2::splat(-1e4), DVec2::splat(1e4));
+                let slack = lateral_error * (gradient.x.abs() + gradient.y.abs()) + depth_error;
+                receiver_at(view, lifted, gradient, slack)
+            } else {
+                receiver_at(view, relative, DVec2::ZERO, depth_error)
+            }
+        }
+        BiasScheme::NormalOffset => {
+            let texels = f64::from(view.offset_texels) + lateral_error;
+            let growth = texels * steepness * w_row(view).truncate().dot(normal).max(0.0);
+            let offset =
+                texels * clip_w(view, relative).max(0.0) * steepness / (1.0 - growth.min(0.9));
+            let moved = relative + normal * if offset > 0.0 { offset } else { 0.0 };
+            receiver_at(view, moved, DVec2::ZERO, depth_error)
+        }
+        BiasScheme::Manual => {
+            let light = Vec4::from_array(view.light).as_dvec4();
+            let toward_light = (light.truncate() - relative * light.w).normalize();
+            let slope = f64::from(view.manual_slope) * (1.0 - normal.dot(toward_light));
+            let distance = slope.max(f64::from(view.manual_constant));
+            receiver_at(view, relative + toward_light * distance, DVec2::ZERO, 0.0)
+        }
+    }
+}
+
+/// What `filter` returns for `receiver`, in [0, 1].
+pub fn visibility(filter: Filter, map: &DepthLayer<'_>, receiver: &Receiver) -> f64 {
+    if !receiver.inside {
+        return 1.0;
+    }
+    let follow = if filter.compares_each_texel() {
+        receiver.gradient
+    } else {
+        DVec2::ZERO
+    };
+    let lit = |x: i64, y: i64| {
+        let center = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+        let rise = follow.dot(center - receiver.texel).max(0.0);
+        f64::from(u8::from(receiver.depth + rise >= map.depth(x, y)))
+    };
+    let nearest = receiver.texel.floor().as_i64vec2();
+    match kernel(filter) {
+        Kernel::Boxed(radius) => {
+            let side = -radius..=radius;
+            let taps = side.clone().flat_map(|y| side.clone().map(move |x| (x, y)));
+            let sum: f64 = taps.map(|(x, y)| lit(nearest.x + x, nearest.y + y)).sum();
+            sum / ((2 * radius + 1) * (2 * radius + 1)) as f64
+        }
+        Kernel::Bilinear(row) => {
+            let from_centers = receiver.texel - 0.5;
+            let base = from_centers.floor();
+            let fraction = from_centers - base;
+            let first = base.as_i64vec2() - (row.len() / 2) as i64;
+            let across = bilinear_weights(row, fraction.x);
+            let down = bilinear_weights(row, fraction.y);
+            let mut sum = 0.0;
+            for (y, weight_y) in down.iter().enumerate() {
+                for (x, weight_x) in across.iter().enumerate() {
+                    sum += weight_x * weight_y * lit(first.x + x as i64, first.y + y as i64);
+                }
+            }
+            ((sum - 0.5) * f64::from(filter.sharpness()) + 0.5).clamp(0.0, 1.0)
+        }
+    }
+}
+
+enum Kernel {
+    /// A mean of nearest texels within a radius.
+    Boxed(i64),
+    /// A bilinear lookup convolved with a row of integers per axis.
+    Bilinear(&'static [f64]),
+}
+
+fn kernel(filter: Filter) -> Kernel {
+    match filter {
+        Filter::Nearest => Kernel::Boxed(0),
+        Filter::Box => Kernel::Boxed(1),
+        Filter::Hardware | Filter::Bilinear { .. } => Kernel::Bilinear(&[1.0]),
+        Filter::TentNarrow { .. } => Kernel::Bilinear(&[1.0, 2.0, 1.0]),
+        Filter::TentMedium { .. } => Kernel::Bilinear(&[1.0, 3.0, 4.0, 3.0, 1.0]),
+        Filter::TentWide { .. } => Kernel::Bilinear(&[1.0, 5.0, 12.0, 16.0, 12.0, 5.0, 1.0]),
+    }
+}
+
+/// Weights of the texels from the first that counts, for a place `fraction` of a texel past a centre.
+fn bilinear_weights(row: &[f64], fraction: f64) -> Vec<f64> {
+    let sum: f64 = row.iter().sum();
+    (0..=row.len())
+        .map(|i| {
+            let here = row.get(i).copied().unwrap_or(0.0);
+            let before = if i > 0 { row[i - 1] } else { 0.0 };
+            (here * (1.0 - fraction) + before * fraction) / sum
+        })
+        .collect()
+}
+
+fn matrix(view: &ShadowViewUniform) -> DMat4 {
+    Mat4::from_cols_array_2d(&view.texel_from_anchor).as_dmat4()
+}
+
+fn w_row(view: &ShadowViewUniform) -> DVec4 {
+    matrix(view).row(3)
+}
+
+fn clip_w(view: &ShadowViewUniform, relative: DVec3) -> f64 {
+    w_row(view).dot(relative.extend(1.0))
+}
+
+fn plane_across_map(view: &ShadowViewUniform, relative: DVec3, normal: DVec3) -> DVec3 {
+    let plane = normal.extend(-normal.dot(relative));
+    let row = |row: [f32; 4]| Vec4::from_array(row).as_dvec4().dot(plane);
+    DVec3::new(
+        row(view.plane_across),
+        row(view.plane_down),
+        row(view.plane_depth),
+    )
+}
+
+fn receiver_at(
+    view: &ShadowViewUniform,
+    relative: DVec3,
+    gradient: DVec2,
+    offset: f64,
+) -> Receiver {
+    let place = matrix(view) * relative.extend(1.0);
+    let texel = place.truncate().truncate() / place.w;
+    let depth = place.z / place.w;
+    let inner = Vec4::from_array(view.inner).as_dvec4();
+    let within = texel.cmpge(DVec2::new(inner.x, inner.y)).all()
+        && texel.cmple(DVec2::new(inner.z, inner.w)).all();
+    Receiver {
+        texel,
+        depth: depth + offset + depth * f64::from(view.depth_error_relative),
+        gradient,
+        inside: within && place.w > 0.0 && depth >= 0.0,
+    }
+}

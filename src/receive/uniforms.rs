@@ -1,0 +1,101 @@
+//! The layout that Rust and WGSL share.
+
+use bytemuck::{Pod, Zeroable};
+
+use crate::fit::ShadowView;
+use crate::receive::bias::lateral_error_texels;
+use crate::receive::{Bias, Filter};
+
+/// Mirror of `ShadowView` in `wgsl/view.wgsl`: what an engine with its own bind groups puts into a uniform buffer.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct ShadowViewUniform {
+    /// Homogeneous texel x, texel y, depth and w from coordinates relative to the anchor; columns.
+    pub texel_from_anchor: [[f32; 4]; 4],
+    /// Row of the inverse transpose that gives a plane's component along texel x.
+    pub plane_across: [f32; 4],
+    /// The same along texel y.
+    pub plane_down: [f32; 4],
+    /// The same along depth.
+    pub plane_depth: [f32; 4],
+    /// Toward the light, homogeneous, relative to the anchor.
+    pub light: [f32; 4],
+    /// A point of render space inside the view.
+    pub anchor: [f32; 3],
+    /// Layer of the map.
+    pub layer: u32,
+    /// Texels between which a kernel stays inside the map: x and y from, x and y to.
+    pub inner: [f32; 4],
+    /// Texels per side.
+    pub map_size: f32,
+    /// Absolute rounding error of a comparison in ndc depth.
+    pub depth_error: f32,
+    /// Rounding error of a comparison relative to the depth.
+    pub depth_error_relative: f32,
+    /// Error across the map in texels.
+    pub lateral_error: f32,
+    /// Offset along the normal in texels times |nx| + |ny|.
+    pub offset_texels: f32,
+    /// Manual bias: constant, world units.
+    pub manual_constant: f32,
+    /// Manual bias: slope, world units.
+    pub manual_slope: f32,
+    /// Edge sharpness.
+    pub sharpness: f32,
+}
+
+/// How the maps of a light are looked up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Sampling {
+    pub filter: Filter,
+    pub bias: Bias,
+}
+
+/// A view that nothing casts into: no receiver is inside it.
+pub(crate) fn empty_view_uniform(layer: u32) -> ShadowViewUniform {
+    ShadowViewUniform {
+        inner: [1.0, 1.0, 0.0, 0.0],
+        layer,
+        map_size: 1.0,
+        ..ShadowViewUniform::zeroed()
+    }
+}
+
+/// The uniform of `view`, or of an empty one.
+pub(crate) fn view_uniform(
+    view: Option<&ShadowView>,
+    layer: u32,
+    sampling: &Sampling,
+) -> ShadowViewUniform {
+    let Some(view) = view else {
+        return empty_view_uniform(layer);
+    };
+    let texel_from_anchor = view.texel_from_anchor();
+    // A plane is a row vector and goes through the inverse: plane_texel = plane_render * inverse(texel_from_anchor). Its
+    // component along texel x is a product with the inverse's first column.
+    let anchor_from_texel = texel_from_anchor.inverse();
+    let size = f64::from(view.map_size());
+    // Where a map is smaller than its kernel, only its middle remains.
+    let reach = sampling.filter.reach_texels().min(size * 0.5);
+    let inner = [reach, reach, size - reach, size - reach].map(|texel| texel as f32);
+    let (depth_error, depth_error_relative) = view.depth_error_ndc();
+    let (manual_constant, manual_slope) = sampling.bias.manual();
+    ShadowViewUniform {
+        texel_from_anchor: texel_from_anchor.as_mat4().to_cols_array_2d(),
+        plane_across: anchor_from_texel.col(0).as_vec4().to_array(),
+        plane_down: anchor_from_texel.col(1).as_vec4().to_array(),
+        plane_depth: anchor_from_texel.col(2).as_vec4().to_array(),
+        light: view.light_from_anchor().as_vec4().to_array(),
+        anchor: view.anchor_render().to_array(),
+        layer,
+        inner,
+        map_size: view.map_size() as f32,
+        depth_error: depth_error as f32,
+        depth_error_relative: depth_error_relative as f32,
+        lateral_error: lateral_error_texels(view) as f32,
+        offset_texels: sampling.bias.offset_texels(sampling.filter) as f32,
+        manual_constant,
+        manual_slope,
+        sharpness: sampling.filter.sharpness(),
+    }
+}

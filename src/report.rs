@@ -1,0 +1,62 @@
+//! What a frame's shadows cost and how fine they are.
+
+use glam::Vec2;
+
+/// What became of a view in a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ViewStatus {
+    /// Its casters were drawn.
+    Drawn,
+    /// Nothing in it had changed; its map was kept.
+    Kept,
+    /// Nothing casts onto anything that it sees; there is no map, and all is lit.
+    Empty,
+}
+
+/// One view of a light in one frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewReport {
+    /// Layer of the depth texture.
+    pub layer: u32,
+    /// Drawn, kept or empty.
+    pub status: ViewStatus,
+    /// Casters in the view: the draws of its pass, where there was one.
+    pub casters: u32,
+    /// Casters left out because nothing of them can fall on what the view covers.
+    pub culled: u32,
+    /// World size of a texel along the map's x and y.
+    pub texel_size_world: Vec2,
+    /// World distance from the near to the far plane.
+    pub depth_range_world: f32,
+    /// Height in world units above which a caster that lies on a surface always casts onto it: the worst gap (peter-panning)
+    /// that the light's bias can leave, at the worst angle.
+    pub worst_gap_world: f32,
+}
+
+/// What a light did in a frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ShadowReport {
+    /// One entry per view, in the order of layers.
+    pub views: Vec<ViewReport>,
+    /// Device memory of the depth texture.
+    pub bytes_held: u64,
+}
+
+impl ShadowReport {
+    /// Passes recorded.
+    pub fn passes(&self) -> u32 {
+        self.drawn().count() as u32
+    }
+
+    /// Caster draws recorded.
+    pub fn draws(&self) -> u32 {
+        self.drawn().map(|view| view.casters).sum()
+    }
+
+    fn drawn(&self) -> impl Iterator<Item = &ViewReport> {
+        self.views
+            .iter()
+            .filter(|view| view.status == ViewStatus::Drawn)
+    }
+}

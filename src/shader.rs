@@ -1,0 +1,98 @@
+//! The WGSL as data: a table of plain, directive-free modules, what each requires, and their union.
+//!
+//! All names begin with `shadow_`, `Shadow` or `SHADOW_`, so the texts concatenate with any engine's, in any order, and load
+//! as they are as WESL or naga_oil modules. Sampling functions take texture, sampler and view as arguments; nothing in
+//! [`MODULES`] declares a binding but `caster` and the two pass modules. An engine with its own bind groups composes
+//! `["bias_plane", "filter_tent_narrow"]` and calls
+//! `shadow_filter_tent_narrow(map, map_sampler, shadow_receiver_plane(view, position, normal))`.
+
+use crate::error::BindingsError;
+
+/// One WGSL text of the library.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ShaderModule {
+    /// Its name in the table: the file under `wgsl/` without its ending.
+    pub name: &'static str,
+    /// WGSL without any directive.
+    pub source: &'static str,
+    /// Names of the modules whose declarations it uses.
+    pub requires: &'static [&'static str],
+}
+
+macro_rules! module {
+    ($name:literal, $file:literal, [$($requires:literal),*]) => {
+        ShaderModule {
+            name: $name,
+            source: include_str!(concat!("../wgsl/", $file)),
+            requires: &[$($requires),*],
+        }
+    };
+}
+
+pub(crate) const CASTER: ShaderModule = module!("caster", "caster.wgsl", []);
+pub(crate) const CASTER_BUILTIN: ShaderModule =
+    module!("caster_builtin", "pass/caster_builtin.wgsl", ["caster"]);
+pub(crate) const DEBUG_VIEW: ShaderModule = module!("debug_view", "pass/debug_view.wgsl", []);
+
+/// Every WGSL text of the library.
+pub const MODULES: &[ShaderModule] = &[
+    module!("view", "view.wgsl", []),
+    module!("bias_plane", "bias_plane.wgsl", ["view"]),
+    module!("bias_normal_offset", "bias_normal_offset.wgsl", ["view"]),
+    module!("bias_manual", "bias_manual.wgsl", ["view"]),
+    module!("gather", "gather.wgsl", ["view"]),
+    module!("filter_nearest", "filter_nearest.wgsl", ["view"]),
+    module!("filter_hardware", "filter_hardware.wgsl", ["view"]),
+    module!("filter_box", "filter_box.wgsl", ["view"]),
+    module!(
+        "filter_bilinear",
+        "filter_bilinear.wgsl",
+        ["view", "gather"]
+    ),
+    module!(
+        "filter_tent_narrow",
+        "filter_tent_narrow.wgsl",
+        ["view", "gather"]
+    ),
+    module!(
+        "filter_tent_medium",
+        "filter_tent_medium.wgsl",
+        ["view", "gather"]
+    ),
+    module!(
+        "filter_tent_wide",
+        "filter_tent_wide.wgsl",
+        ["view", "gather"]
+    ),
+    module!("normal", "normal.wgsl", []),
+    CASTER,
+    CASTER_BUILTIN,
+    DEBUG_VIEW,
+];
+
+/// The texts of the named modules and of all that they require, each once, in table order.
+///
+/// # Errors
+/// [`BindingsError::UnknownModule`] for a name that is not in [`MODULES`].
+pub fn compose(names: &[&str]) -> Result<String, BindingsError> {
+    let mut wanted = [false; MODULES.len()];
+    let mut open: Vec<&str> = names.to_vec();
+    while let Some(name) = open.pop() {
+        let index = MODULES
+            .iter()
+            .position(|module| module.name == name)
+            .ok_or_else(|| BindingsError::UnknownModule {
+                name: name.to_owned(),
+            })?;
+        if !wanted[index] {
+            wanted[index] = true;
+            open.extend_from_slice(MODULES[index].requires);
+        }
+    }
+    Ok(MODULES
+        .iter()
+        .zip(wanted)
+        .filter(|(_, wanted)| *wanted)
+        .map(|(module, _)| module.source)
+        .collect())
+}

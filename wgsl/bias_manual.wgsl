@@ -1,0 +1,11 @@
+// The textbook's bias: max(slope * (1 - n · l), constant), in world units toward the light.
+//
+// Rust twin: src/receive/reference.rs. Requires: view.
+
+fn shadow_receiver_manual(view: ShadowView, position: vec3<f32>, normal: vec3<f32>) -> ShadowReceiver {
+    let relative = position - view.anchor;
+    let toward_light = normalize(view.light.xyz - relative * view.light.w);
+    let facing = dot(normal, toward_light);
+    let distance = max(view.manual_slope * (1.0 - facing), view.manual_constant);
+    return shadow_receiver_at(view, relative + toward_light * distance, vec2<f32>(0.0), 0.0);
+}

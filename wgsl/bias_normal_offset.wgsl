@@ -1,0 +1,23 @@
+// Bias by moving the receiver along its normal, by the least distance that frees a plane of self-shadowing under any kernel.
+//
+// d = (K + lateral error) * s * (|nx| + |ny|), K the kernel's reach per axis in texels, s the world size of a texel; for a
+// perspective view the texel grows with the offset point's own distance: d / (1 - d'), d' the offset per unit of view depth
+// times the normal's component away from the light. One reference depth serves the whole kernel.
+// Rust twin: src/receive/reference.rs. Requires: view.
+
+fn shadow_receiver_normal_offset(
+    view: ShadowView,
+    position: vec3<f32>,
+    normal: vec3<f32>,
+) -> ShadowReceiver {
+    let relative = position - view.anchor;
+    let plane = shadow_plane(view, relative, normal);
+    let texels = view.offset_texels + view.lateral_error;
+    let offset = shadow_normal_offset(view, relative, plane, texels);
+    let rows = transpose(view.texel_from_anchor);
+    // Growth of w along the normal: zero for an orthographic view.
+    let growth = texels * (abs(plane.x) + abs(plane.y)) * max(dot(rows[3].xyz, normal), 0.0);
+    let distance = offset / (1.0 - min(growth, 0.9));
+    let moved = relative + normal * select(0.0, distance, distance > 0.0);
+    return shadow_receiver_at(view, moved, vec2<f32>(0.0), view.depth_error);
+}

@@ -1,0 +1,26 @@
+// Bias derived from the receiver's tangent plane: each texel of a kernel is compared with the plane's own depth at that texel.
+//
+// Ndc depth is affine in map coordinates over a plane, for orthographic and perspective views alike, so the plane needs one
+// gradient. Filters clamp the extrapolated depth so that it never lies farther from the light than the receiver (Dou, Yan,
+// Kerzner, Dai, Wyman 2014, "Adaptive Depth Bias for Shadow Maps"). What remains is rounding: `lateral_error` texels along the
+// plane and `depth_error` in depth; and an offset of `offset_texels` for facets finer than a texel.
+// Rust twin: src/receive/reference.rs. Requires: view.
+
+// Steeper planes than this cross the whole depth range within a fraction of a texel; the limit keeps infinity out.
+const SHADOW_MAX_GRADIENT: f32 = 1e4;
+
+fn shadow_receiver_plane(view: ShadowView, position: vec3<f32>, normal: vec3<f32>) -> ShadowReceiver {
+    let relative = position - view.anchor;
+    let flat_plane = shadow_plane(view, relative, normal);
+    let offset = shadow_normal_offset(view, relative, flat_plane, view.offset_texels);
+    let lifted = relative + normal * offset;
+    let plane = shadow_plane(view, lifted, normal);
+    // A plane seen edge on has no gradient, and neither has a normal that is zero or not a number.
+    if !(abs(plane.z) > 0.0) {
+        return shadow_receiver_at(view, relative, vec2<f32>(0.0), view.depth_error);
+    }
+    let limit = vec2<f32>(SHADOW_MAX_GRADIENT);
+    let gradient = clamp(-plane.xy / plane.z, -limit, limit);
+    let steepness = abs(gradient.x) + abs(gradient.y);
+    return shadow_receiver_at(view, lifted, gradient, view.lateral_error * steepness + view.depth_error);
+}

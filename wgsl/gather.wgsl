@@ -1,0 +1,32 @@
+// Four raw depths at once, each compared with the receiver's own depth at that texel.
+//
+// Rust twin: src/receive/reference.rs. Requires: view.
+
+// 1 where lit, for the texels (first), (first + x), (first + y), (first + x + y).
+fn shadow_gather(
+    map: texture_depth_2d_array,
+    map_sampler: sampler,
+    receiver: ShadowReceiver,
+    first: vec2<f32>,
+) -> vec4<f32> {
+    // The corner where the four texels meet: half a texel from every other choice, so rounding cannot miss them.
+    let corner = (first + 1.0) / receiver.map_size;
+    // Gather's order is counter-clockwise from the lower left.
+    let depths = textureGather(map, map_sampler, corner, receiver.layer).wzxy;
+    let to_first = first + 0.5 - receiver.texel;
+    let rise = dot(receiver.gradient, to_first);
+    let along = vec4<f32>(
+        0.0,
+        receiver.gradient.x,
+        receiver.gradient.y,
+        receiver.gradient.x + receiver.gradient.y,
+    );
+    // Never farther from the light than the receiver itself.
+    let reference = receiver.depth + max(vec4<f32>(rise) + along, vec4<f32>(0.0));
+    return select(vec4<f32>(0.0), vec4<f32>(1.0), reference >= depths);
+}
+
+// A sharper edge: the ramp of visibility stretched around one half.
+fn shadow_sharpen(visibility: f32, sharpness: f32) -> f32 {
+    return clamp((visibility - 0.5) * sharpness + 0.5, 0.0, 1.0);
+}

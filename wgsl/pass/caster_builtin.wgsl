@@ -1,0 +1,18 @@
+// The built-in vertex stages of casters. Requires: caster.
+
+@vertex
+fn shadow_caster_vertex_identity(@location(0) position: vec3<f32>) -> @builtin(position) vec4<f32> {
+    return shadow_caster_clip(position);
+}
+
+@vertex
+fn shadow_caster_vertex_instance(
+    @location(0) position: vec3<f32>,
+    @location(1) column_x: vec4<f32>,
+    @location(2) column_y: vec4<f32>,
+    @location(3) column_z: vec4<f32>,
+    @location(4) column_w: vec4<f32>,
+) -> @builtin(position) vec4<f32> {
+    let render_from_model = mat4x4<f32>(column_x, column_y, column_z, column_w);
+    return shadow_caster_clip((render_from_model * vec4<f32>(position, 1.0)).xyz);
+}

@@ -1,0 +1,91 @@
+// One depth render of a light as a receiver sees it, and where a receiver stands in it.
+//
+// Spaces: positions and normals are render space; texels have their origin top left and centres at halves; depth is ndc,
+// reversed (near 1, far 0, empty map 0).
+// Rust twins: src/receive/uniforms.rs (layout), src/receive/reference.rs (arithmetic in f64).
+
+struct ShadowView {
+    // Homogeneous texel x, texel y, depth and w from coordinates relative to the anchor.
+    texel_from_anchor: mat4x4<f32>,
+    // Rows of the inverse transpose: they take a plane (normal, -normal · point) to texel space.
+    plane_across: vec4<f32>,
+    plane_down: vec4<f32>,
+    plane_depth: vec4<f32>,
+    // Toward the light, homogeneous and relative to the anchor: w = 0 for a direction, 1 for a place.
+    light: vec4<f32>,
+    // A point of render space inside the view.
+    anchor: vec3<f32>,
+    layer: u32,
+    // Texels between which a kernel stays inside the map: x and y from, x and y to. Empty (from > to) where nothing casts.
+    inner: vec4<f32>,
+    map_size: f32,
+    // Rounding error of a comparison: absolute in ndc depth, relative to the depth, and across the map in texels.
+    depth_error: f32,
+    depth_error_relative: f32,
+    lateral_error: f32,
+    // Offset along the normal in texels times |nx| + |ny| of the normal in light space.
+    offset_texels: f32,
+    // Manual bias in world units.
+    manual_constant: f32,
+    manual_slope: f32,
+    // Edge sharpness of gathered filters; 1 is plain.
+    sharpness: f32,
+}
+
+struct ShadowReceiver {
+    texel: vec2<f32>,
+    // Reference depth at `texel`, moved toward the light by the bias.
+    depth: f32,
+    // Change of the reference depth per texel along x and y: the receiver's own plane, or zero.
+    gradient: vec2<f32>,
+    layer: u32,
+    map_size: f32,
+    sharpness: f32,
+    // False where the map says nothing of this place: beyond its sides, behind a local light, beyond the far plane.
+    inside: bool,
+}
+
+// The receiver at `relative` to the anchor, with `depth_offset` toward the light.
+fn shadow_receiver_at(
+    view: ShadowView,
+    relative: vec3<f32>,
+    gradient: vec2<f32>,
+    depth_offset: f32,
+) -> ShadowReceiver {
+    let place = view.texel_from_anchor * vec4<f32>(relative, 1.0);
+    let texel = place.xy / place.w;
+    let depth = place.z / place.w;
+    let within = all(texel >= view.inner.xy) && all(texel <= view.inner.zw);
+    var receiver: ShadowReceiver;
+    receiver.texel = texel;
+    receiver.depth = depth + depth_offset + depth * view.depth_error_relative;
+    receiver.gradient = gradient;
+    receiver.layer = view.layer;
+    receiver.map_size = view.map_size;
+    receiver.sharpness = view.sharpness;
+    receiver.inside = within && place.w > 0.0 && depth >= 0.0;
+    return receiver;
+}
+
+// The receiver's tangent plane in texel space: its components along texel x, texel y and depth.
+fn shadow_plane(view: ShadowView, relative: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
+    let plane = vec4<f32>(normal, -dot(normal, relative));
+    return vec3<f32>(
+        dot(view.plane_across, plane),
+        dot(view.plane_down, plane),
+        dot(view.plane_depth, plane),
+    );
+}
+
+// World distance along the normal by which `texels` of the map displace a plane at this place: texels * s * (|nx| + |ny|) with
+// s the world size of a texel and n the normal in light space.
+fn shadow_normal_offset(
+    view: ShadowView,
+    relative: vec3<f32>,
+    plane: vec3<f32>,
+    texels: f32,
+) -> f32 {
+    let rows = transpose(view.texel_from_anchor);
+    let w = dot(rows[3], vec4<f32>(relative, 1.0));
+    return texels * max(w, 0.0) * (abs(plane.x) + abs(plane.y));
+}
