@@ -1,0 +1,139 @@
+//! The command line.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Parser, ValueEnum};
+use wgpu_shadows::{Bias, Filter};
+
+/// Renders a glTF 2.0 file with shadows, offscreen, to a PNG.
+#[derive(Parser, Debug)]
+#[command(name = "gltf")]
+pub struct Options {
+    /// The .glb or .gltf file.
+    pub file: PathBuf,
+    /// Where the picture goes.
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Where visibility goes: 8-bit grey, one sample a pixel, of the file's first light.
+    #[arg(long)]
+    pub visibility: Option<PathBuf>,
+    /// Where the report goes, as JSON.
+    #[arg(long)]
+    pub report: Option<PathBuf>,
+    /// Size of the picture in pixels.
+    #[arg(long, default_value = "960x540", value_parser = size)]
+    pub size: [u32; 2],
+    /// Texels per side of each shadow map.
+    #[arg(long, default_value_t = 2048)]
+    pub map_size: u32,
+    /// nearest, hardware, box, bilinear, tent3, tent5 or tent7; the gathered ones with an edge sharpness, as in tent3:3.
+    #[arg(long, default_value = "tent3:3", value_parser = filter)]
+    pub filter: Filter,
+    /// auto, normal-offset, or manual:CONSTANT,SLOPE in world units.
+    #[arg(long, default_value = "auto", value_parser = bias)]
+    pub bias: Bias,
+    /// Cascades of a directional light, 1 to 8.
+    #[arg(long, default_value_t = 1)]
+    pub cascades: u32,
+    /// Distance along the view beyond which nothing is shadowed.
+    #[arg(long, default_value_t = f32::INFINITY)]
+    pub max_distance: f32,
+    /// Leaves shadows out.
+    #[arg(long)]
+    pub no_shadows: bool,
+    /// Which of wgpu's backends to use; the first that works without it.
+    #[arg(long)]
+    pub adapter: Option<Backend>,
+    /// Frames over which times are taken.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub frames: u32,
+}
+
+/// A wgpu backend.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Backend {
+    /// Vulkan; on machines without a GPU, lavapipe.
+    Vulkan,
+    /// OpenGL; on machines without a GPU, llvmpipe.
+    Gl,
+}
+
+/// The options, or the exit code after one line on stderr.
+pub fn parse() -> Result<Options, ExitCode> {
+    let options = Options::try_parse().map_err(|error| {
+        if error.use_stderr() {
+            let text = error.to_string();
+            eprintln!("{}", text.lines().next().unwrap_or("error: bad arguments"));
+            ExitCode::from(2)
+        } else {
+            print!("{error}");
+            ExitCode::SUCCESS
+        }
+    })?;
+    if options.out.is_none() && options.visibility.is_none() && options.report.is_none() {
+        eprintln!("error: nothing to do: give --out, --visibility or --report");
+        return Err(ExitCode::from(2));
+    }
+    Ok(options)
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let rule = "must be WIDTHxHEIGHT, each 1 to 16384";
+    let (width, height) = text.split_once('x').ok_or(rule)?;
+    let side = |text: &str| text.parse().ok().filter(|side| (1..=16384).contains(side));
+    match (side(width), side(height)) {
+        (Some(width), Some(height)) => Ok([width, height]),
+        _ => Err(rule.to_owned()),
+    }
+}
+
+fn filter(text: &str) -> Result<Filter, String> {
+    let (name, sharpness) = match text.split_once(':') {
+        None => (text, None),
+        Some((name, sharpness)) => {
+            let rule = "the sharpness must be a number of at least 1";
+            let parsed = sharpness
+                .parse::<f32>()
+                .ok()
+                .filter(|s| *s >= 1.0 && s.is_finite());
+            (name, Some(parsed.ok_or(rule)?))
+        }
+    };
+    let plain = sharpness.unwrap_or(1.0);
+    match name {
+        "nearest" | "hardware" | "box" if sharpness.is_some() => {
+            Err(format!("{name} has no sharpness"))
+        }
+        "nearest" => Ok(Filter::Nearest),
+        "hardware" => Ok(Filter::Hardware),
+        "box" => Ok(Filter::Box),
+        "bilinear" => Ok(Filter::Bilinear { sharpness: plain }),
+        "tent3" => Ok(Filter::TentNarrow { sharpness: plain }),
+        "tent5" => Ok(Filter::TentMedium { sharpness: plain }),
+        "tent7" => Ok(Filter::TentWide { sharpness: plain }),
+        _ => Err("must be nearest, hardware, box, bilinear, tent3, tent5 or tent7".to_owned()),
+    }
+}
+
+fn bias(text: &str) -> Result<Bias, String> {
+    let rule =
+        "must be auto, normal-offset or manual:CONSTANT,SLOPE with two numbers of at least 0";
+    match text {
+        "auto" => return Ok(Bias::Auto),
+        "normal-offset" => return Ok(Bias::NormalOffset),
+        _ => {}
+    }
+    let numbers = text.strip_prefix("manual:").ok_or(rule)?;
+    let (constant, slope) = numbers.split_once(',').ok_or(rule)?;
+    let number = |text: &str| {
+        text.trim()
+            .parse::<f32>()
+            .ok()
+            .filter(|n| *n >= 0.0 && n.is_finite())
+    };
+    match (number(constant), number(slope)) {
+        (Some(constant), Some(slope)) => Ok(Bias::Manual { constant, slope }),
+        _ => Err(rule.to_owned()),
+    }
+}

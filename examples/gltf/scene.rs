@@ -1,0 +1,168 @@
+//! What a scene is once it is loaded. World space is f64; render space is world minus the camera's position, f32.
+
+use glam::camera::rh::proj::directx as proj;
+use glam::{DMat4, DVec3, Mat4, Vec3, Vec4};
+use wgpu_shadows::{Aabb, CameraView};
+
+/// A vertex as the shaders read it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct Vertex {
+    /// Model space.
+    pub position: [f32; 3],
+    /// Model space; zero where the file has none, and then the facet's own is used.
+    pub normal: [f32; 3],
+    /// Texture coordinates of the base colour.
+    pub uv: [f32; 2],
+}
+
+/// A triangle list of one material.
+pub struct Mesh {
+    pub vertices: Vec<Vertex>,
+    pub indices: Vec<u32>,
+    pub material: usize,
+}
+
+/// Base colour and sidedness.
+#[derive(Clone, Copy)]
+pub struct Material {
+    pub base_color: Vec4,
+    /// Index into the scene's images.
+    pub image: Option<usize>,
+    pub double_sided: bool,
+    /// Fragments of less alpha are holes; 0 for a solid material.
+    pub alpha_cutoff: f32,
+}
+
+/// RGBA, 8 bits, sRGB.
+pub struct Picture {
+    pub width: u32,
+    pub height: u32,
+    pub rgba: Vec<u8>,
+}
+
+/// A mesh at a place.
+pub struct Instance {
+    pub mesh: usize,
+    pub render_from_model: Mat4,
+    /// Exact bounds of the transformed vertices.
+    pub bounds_render: Aabb,
+}
+
+/// The kinds of `KHR_lights_punctual`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LightKind {
+    Directional,
+    Point,
+    Spot {
+        inner_cone_radians: f32,
+        outer_cone_radians: f32,
+    },
+}
+
+/// A light of the file.
+#[derive(Clone, Copy, Debug)]
+pub struct Light {
+    pub kind: LightKind,
+    /// Linear colour times intensity: lux for directional lights, candela for the others.
+    pub intensity: Vec3,
+    /// Direction in which it shines, unit length.
+    pub direction: Vec3,
+    pub position_render: Vec3,
+    /// Distance beyond which it gives no light; infinite where the file does not say.
+    pub range: f32,
+}
+
+/// A file, ready to be drawn.
+pub struct Scene {
+    /// World position of render space's origin: the camera.
+    pub origin: DVec3,
+    pub camera: CameraView,
+    pub meshes: Vec<Mesh>,
+    pub materials: Vec<Material>,
+    pub images: Vec<Picture>,
+    pub instances: Vec<Instance>,
+    pub lights: Vec<Light>,
+    /// What was left out or made up.
+    pub notes: Vec<String>,
+}
+
+impl Scene {
+    /// Bounds of everything, render space.
+    pub fn bounds_render(&self) -> Aabb {
+        self.instances.iter().fold(Aabb::EMPTY, |bounds, instance| {
+            bounds.union(instance.bounds_render)
+        })
+    }
+
+    pub fn triangle_count(&self) -> usize {
+        self.instances
+            .iter()
+            .map(|instance| self.meshes[instance.mesh].indices.len() / 3)
+            .sum()
+    }
+}
+
+/// A perspective or orthographic lens, with reversed depth.
+#[derive(Clone, Copy, Debug)]
+pub enum Lens {
+    Perspective {
+        fov_y_radians: f32,
+        near: f32,
+        far: Option<f32>,
+    },
+    Orthographic {
+        half_height: f32,
+        near: f32,
+        far: f32,
+    },
+}
+
+impl Lens {
+    /// Clip space (depth 1 near, 0 far) from view space.
+    pub fn clip_from_view(&self, aspect: f32) -> Mat4 {
+        match *self {
+            // Near and far trade places: that is all there is to reversed depth.
+            Self::Perspective {
+                fov_y_radians,
+                near,
+                far: Some(far),
+            } => proj::perspective(fov_y_radians, aspect, far, near),
+            Self::Perspective {
+                fov_y_radians,
+                near,
+                far: None,
+            } => proj::perspective_infinite_reverse(fov_y_radians, aspect, near),
+            Self::Orthographic {
+                half_height,
+                near,
+                far,
+            } => {
+                let half_width = half_height * aspect;
+                proj::orthographic(
+                    -half_width,
+                    half_width,
+                    -half_height,
+                    half_height,
+                    far,
+                    near,
+                )
+            }
+        }
+    }
+}
+
+/// Camera and render space of a camera that stands at `world_from_view`.
+pub fn camera_view(world_from_view: &DMat4, lens: &Lens, aspect: f32) -> (DVec3, CameraView) {
+    let origin = world_from_view.w_axis.truncate();
+    // glTF cameras ignore scale, and view matrices are rigid.
+    let right = world_from_view.x_axis.truncate().normalize_or(DVec3::X);
+    let back = world_from_view.z_axis.truncate();
+    let back = (back - right * back.dot(right)).normalize_or(DVec3::Z);
+    let view_from_render = glam::DMat3::from_cols(right, back.cross(right), back).transpose();
+    let view_from_render = Mat4::from_mat3(view_from_render.as_mat3());
+    (
+        origin,
+        CameraView::new(view_from_render, lens.clip_from_view(aspect)),
+    )
+}
