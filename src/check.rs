@@ -56,14 +56,19 @@ pub(crate) fn bounds(field: &'static str, index: usize, bounds: &Aabb) -> Result
 
 /// Fills `list` with the casters' bounds, once per frame.
 pub(crate) fn caster_bounds(
+    field: &'static str,
     casters: &[&dyn ShadowCaster],
     list: &mut Vec<Aabb>,
 ) -> Result<(), ShadowError> {
     list.clear();
     list.extend(casters.iter().map(|caster| caster.bounds()));
+    receiver_bounds(field, list)
+}
+
+pub(crate) fn receiver_bounds(field: &'static str, list: &[Aabb]) -> Result<(), ShadowError> {
     list.iter()
         .enumerate()
-        .try_for_each(|(index, caster)| bounds("DirectionalFrame::casters", index, caster))
+        .try_for_each(|(index, item)| bounds(field, index, item))
 }
 
 pub(crate) fn filter(field: &'static str, filter: Filter) -> Result<(), ShadowError> {

@@ -2,11 +2,14 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::cast::{DepthMap, Recorder, ShadowCaster, UploadBuffer, ViewDraws};
+use crate::cast::{ShadowCaster, ViewDraws};
 use crate::check;
-use crate::fit::{CasterBounds, DirectionalFit, FitInput, FitLimits, LightAxes, Region};
-use crate::receive::{Receiver, Sampling, ShadowSource, ShadowViewUniform, view_uniform};
-use crate::report::{ShadowReport, ViewReport, ViewStatus};
+use crate::fit::{
+    CasterBounds, DirectionalFit, FitInput, FitLimits, LightAxes, MAX_CASCADES, Region,
+};
+use crate::light_maps::{LightMaps, LightMapsDescriptor, light_maps_getters};
+use crate::receive::{Sampling, Selection, empty_view_uniform};
+use crate::report::ShadowReport;
 use crate::{Aabb, Bias, CameraView, CascadeSplit, Filter, ShadowError, ShadowView};
 
 /// What a [`DirectionalShadow`] is made of.
@@ -88,23 +91,11 @@ pub struct DirectionalFrame<'a> {
 /// Shadows of a directional light: a depth texture with one layer per cascade, its uniforms, and what is needed to fill them.
 #[derive(Debug)]
 pub struct DirectionalShadow {
-    map: DepthMap,
-    recorder: Recorder,
-    uniforms: UploadBuffer,
-    sampling: Sampling,
+    maps: LightMaps,
     limits: FitLimits,
     fit: DirectionalFit,
-    views: Vec<ViewDraws>,
-    report: ShadowReport,
-    scratch: Scratch,
-}
-
-/// Lists that keep their memory from frame to frame.
-#[derive(Debug, Default)]
-struct Scratch {
     bounds: Vec<Aabb>,
     casters: Vec<CasterBounds>,
-    spare_views: Vec<ViewDraws>,
 }
 
 impl DirectionalShadow {
@@ -116,51 +107,42 @@ impl DirectionalShadow {
         device: &wgpu::Device,
         descriptor: &DirectionalShadowDescriptor<'_>,
     ) -> Result<Self, ShadowError> {
-        let label = descriptor.label.unwrap_or("directional shadow");
         check::in_range(
             "DirectionalShadowDescriptor::cascades",
             "in 1..=8",
-            (1..=8).contains(&descriptor.cascades),
+            (1..=MAX_CASCADES as u32).contains(&descriptor.cascades),
             descriptor.cascades,
         )?;
         check::split("DirectionalShadowDescriptor::split", descriptor.split)?;
         check::filter("DirectionalShadowDescriptor::filter", descriptor.filter)?;
         check::bias("DirectionalShadowDescriptor::bias", descriptor.bias)?;
-        let map = DepthMap::new(
-            device,
-            label,
-            "DirectionalShadowDescriptor::map_size",
-            descriptor.map_size,
-            descriptor.cascades,
-        )?;
-        let recorder = Recorder::new(device, label, descriptor.cascades)?;
-        let uniforms = UploadBuffer::new(
-            device,
-            &format!("{label} views"),
-            u64::from(descriptor.cascades) * size_of::<ShadowViewUniform>() as u64,
-        )?;
-        let report = ShadowReport {
-            views: Vec::new(),
-            bytes_held: map.bytes(),
+        let sampling = Sampling {
+            filter: descriptor.filter,
+            bias: descriptor.bias,
         };
-        Ok(Self {
-            map,
-            recorder,
-            uniforms,
-            sampling: Sampling {
-                filter: descriptor.filter,
-                bias: descriptor.bias,
+        let maps = LightMaps::new(
+            device,
+            &LightMapsDescriptor {
+                label: descriptor.label.unwrap_or("directional shadow"),
+                size_field: "DirectionalShadowDescriptor::map_size",
+                map_size: descriptor.map_size,
+                layers: descriptor.cascades,
+                sampling,
+                selection: Selection::FirstInside,
+                empty: empty_view_uniform(0, Vec3::ZERO),
             },
+        )?;
+        Ok(Self {
+            maps,
             limits: FitLimits {
                 map_size: descriptor.map_size,
-                margin_texels: descriptor.filter.margin_texels(),
+                margin_texels: sampling.margin_texels(),
                 cascades: descriptor.cascades as usize,
                 split: descriptor.split,
             },
             fit: DirectionalFit::default(),
-            views: Vec::new(),
-            report,
-            scratch: Scratch::default(),
+            bounds: Vec::new(),
+            casters: Vec::new(),
         })
     }
 
@@ -184,156 +166,60 @@ impl DirectionalShadow {
                 check::bounds("DirectionalFrame::coverage", 0, &bounds)?;
                 Region::Bounds(bounds)
             }
-            Coverage::Camera(camera) => Region::Camera(camera.frustum()?),
+            Coverage::Camera(camera) => Region::Camera(camera.frustum(
+                "DirectionalFrame::coverage.view_from_render",
+                "DirectionalFrame::coverage.clip_from_view",
+                "DirectionalFrame::coverage.max_distance",
+            )?),
         };
-        check::caster_bounds(frame.casters, &mut self.scratch.bounds)?;
-        for (index, bounds) in frame.receivers.iter().enumerate() {
-            check::bounds("DirectionalFrame::receivers", index, bounds)?;
-        }
+        check::caster_bounds("DirectionalFrame::casters", frame.casters, &mut self.bounds)?;
+        check::receiver_bounds("DirectionalFrame::receivers", frame.receivers)?;
         let input = FitInput {
             axes,
             origin: frame.origin,
             region,
-            casters: &self.scratch.bounds,
+            casters: &self.bounds,
             receivers: frame.receivers,
         };
-        let fit = self
-            .fit
-            .fit(&input, &self.limits, &mut self.scratch.casters)?;
-        let mut views = self.cull(&fit, &axes, frame.origin);
-        let uniforms = uniforms_of(&views, self.map.layers(), &self.sampling);
-        let upload = self
-            .uniforms
-            .prepare(device, bytemuck::cast_slice(&uniforms))?;
-        let prepared = self.recorder.prepare(device, &views)?;
-        // Nothing fails from here on.
+        let fit = self.fit.fit(&input, &self.limits, &mut self.casters);
+        let views = self.cull(&fit, &axes, frame.origin)?;
+        let empty = |layer| empty_view_uniform(layer, Vec3::ZERO);
+        let report = self
+            .maps
+            .record(device, encoder, views, empty, frame.casters)?;
         self.fit = fit;
-        self.uniforms.commit(encoder, upload);
-        self.recorder
-            .record(encoder, &self.map, prepared, &mut views, frame.casters);
-        let outdated = std::mem::replace(&mut self.views, views);
-        self.scratch.spare_views = outdated;
-        self.fill_report(frame.casters.len());
-        Ok(&self.report)
-    }
-
-    /// Says that the maps no longer hold what was recorded (an encoder was dropped, the textures were written by others):
-    /// the next frame draws every view.
-    pub fn invalidate(&mut self) {
-        self.recorder.invalidate();
-        self.uniforms.invalidate();
-    }
-
-    /// What [`ShadowBindings`](crate::ShadowBindings) needs of this light.
-    pub fn source(&self) -> ShadowSource<'_> {
-        ShadowSource {
-            receiver: Receiver {
-                map: self.map.array_view(),
-                views: self.uniforms.buffer(),
-                view_count: self.map.layers(),
-                sampling: self.sampling,
-            },
-        }
-    }
-
-    /// The views of the last frame, near cascades first; those that nothing casts into are left out.
-    pub fn views(&self) -> impl ExactSizeIterator<Item = &ShadowView> {
-        self.views.iter().map(|draws| &draws.view)
-    }
-
-    /// Uniforms of the last frame, one per cascade: what [`DirectionalShadow::uniform_buffer`] holds.
-    pub fn view_uniforms(&self) -> Vec<ShadowViewUniform> {
-        uniforms_of(&self.views, self.map.layers(), &self.sampling)
-    }
-
-    /// The depth texture: `Depth32Float`, reversed, one layer per cascade. Usable as a copy source.
-    pub fn texture(&self) -> &wgpu::Texture {
-        self.map.texture()
-    }
-
-    /// All layers as a `texture_depth_2d_array`.
-    pub fn texture_view(&self) -> &wgpu::TextureView {
-        self.map.array_view()
-    }
-
-    /// Uniform buffer with one [`ShadowViewUniform`] per cascade.
-    pub fn uniform_buffer(&self) -> &wgpu::Buffer {
-        self.uniforms.buffer()
-    }
-
-    /// What the last frame did.
-    pub fn report(&self) -> &ShadowReport {
-        &self.report
+        Ok(report)
     }
 
     /// The cascades that something casts into, with the casters of each.
-    fn cull(&mut self, fit: &DirectionalFit, axes: &LightAxes, origin: DVec3) -> Vec<ViewDraws> {
+    fn cull(
+        &mut self,
+        fit: &DirectionalFit,
+        axes: &LightAxes,
+        origin: DVec3,
+    ) -> Result<Vec<ViewDraws>, ShadowError> {
         let windows = &fit.windows[..self.limits.cascades];
         let mut views = Vec::with_capacity(windows.len());
         for (layer, window) in windows.iter().enumerate() {
             let Some(window) = window else { continue };
-            let spare = self.scratch.spare_views.pop();
-            let mut casters = spare.map(|draws| draws.casters).unwrap_or_default();
-            casters.clear();
+            let mut casters = self.maps.spare_list();
             casters.extend(
                 (0u32..)
-                    .zip(&self.scratch.casters)
+                    .zip(&self.casters)
                     .filter(|(_, caster)| caster.can_shadow && window.holds_part_of(&caster.light))
                     .map(|(index, _)| index),
             );
             views.push(ViewDraws {
-                view: ShadowView::orthographic(axes, window, origin, layer as u32),
+                view: ShadowView::orthographic(axes, window, origin, layer as u32).checked()?,
                 casters,
                 drawn: false,
             });
         }
-        views
-    }
-
-    fn fill_report(&mut self, caster_count: usize) {
-        self.report.views.clear();
-        for layer in 0..self.map.layers() {
-            let draws = self.views.iter().find(|draws| draws.view.layer() == layer);
-            self.report.views.push(match draws {
-                None => ViewReport {
-                    layer,
-                    status: ViewStatus::Empty,
-                    casters: 0,
-                    culled: caster_count as u32,
-                    texel_size_world: glam::Vec2::ZERO,
-                    depth_range_world: 0.0,
-                    worst_gap_world: 0.0,
-                },
-                Some(draws) => ViewReport {
-                    layer,
-                    status: if draws.drawn {
-                        ViewStatus::Drawn
-                    } else {
-                        ViewStatus::Kept
-                    },
-                    casters: draws.casters.len() as u32,
-                    culled: (caster_count - draws.casters.len()) as u32,
-                    texel_size_world: draws.view.texel_size_world(),
-                    depth_range_world: draws.view.depth_range_world(),
-                    worst_gap_world: self
-                        .sampling
-                        .bias
-                        .worst_gap_world(self.sampling.filter, &draws.view),
-                },
-            });
-        }
+        Ok(views)
     }
 }
 
-/// One uniform per layer; empty for layers without a view.
-fn uniforms_of(views: &[ViewDraws], layers: u32, sampling: &Sampling) -> Vec<ShadowViewUniform> {
-    (0..layers)
-        .map(|layer| {
-            let draws = views.iter().find(|draws| draws.view.layer() == layer);
-            view_uniform(draws.map(|draws| &draws.view), layer, sampling)
-        })
-        .collect()
-}
+light_maps_getters!(DirectionalShadow, "cascade");
 
 fn check_light(frame: &DirectionalFrame<'_>) -> Result<LightAxes, ShadowError> {
     check::finite_vector("DirectionalFrame::origin", frame.origin)?;

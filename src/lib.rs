@@ -10,9 +10,13 @@ mod debug_view;
 mod directional;
 mod error;
 mod fit;
+mod light_maps;
+mod local_light;
+mod omni;
 mod receive;
 mod report;
 pub mod shader;
+mod spot;
 
 pub use aabb::Aabb;
 pub use cast::{
@@ -25,8 +29,10 @@ pub use directional::{
 };
 pub use error::{BindingsError, CasterError, DebugViewError, ShadowError};
 pub use fit::{CameraView, CascadeSplit, LightAxes, ShadowView};
+pub use omni::{OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor};
 pub use receive::{
     Bias, Filter, ShadowBindings, ShadowBindingsDescriptor, ShadowSource, ShadowViewUniform,
     reference,
 };
 pub use report::{ShadowReport, ViewReport, ViewStatus};
+pub use spot::{SpotFrame, SpotLight, SpotShadow, SpotShadowDescriptor};

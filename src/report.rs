@@ -25,13 +25,28 @@ pub struct ViewReport {
     pub casters: u32,
     /// Casters left out because nothing of them can fall on what the view covers.
     pub culled: u32,
-    /// World size of a texel along the map's x and y.
+    /// World size of a texel along the map's x and y; for a local light at the end of its reach, where it is largest.
     pub texel_size_world: Vec2,
-    /// World distance from the near to the far plane.
+    /// World distance from the near plane to the far plane, or to the end of a local light's reach.
     pub depth_range_world: f32,
     /// Height in world units above which a caster that lies on a surface always casts onto it: the worst gap (peter-panning)
     /// that the light's bias can leave, at the worst angle.
     pub worst_gap_world: f32,
+}
+
+impl ViewReport {
+    /// A view that nothing casts into.
+    pub(crate) fn empty(layer: u32, culled: u32) -> Self {
+        Self {
+            layer,
+            status: ViewStatus::Empty,
+            casters: 0,
+            culled,
+            texel_size_world: Vec2::ZERO,
+            depth_range_world: 0.0,
+            worst_gap_world: 0.0,
+        }
+    }
 }
 
 /// What a light did in a frame.

@@ -64,6 +64,7 @@ pub const MODULES: &[ShaderModule] = &[
         "filter_tent_wide.wgsl",
         ["view", "gather"]
     ),
+    module!("cube_face", "cube_face.wgsl", []),
     module!("normal", "normal.wgsl", []),
     CASTER,
     CASTER_BUILTIN,

@@ -14,10 +14,9 @@ fn shadow_receiver_normal_offset(
     let plane = shadow_plane(view, relative, normal);
     let texels = view.offset_texels + view.lateral_error;
     let offset = shadow_normal_offset(view, relative, plane, texels);
-    let rows = transpose(view.texel_from_anchor);
     // Growth of w along the normal: zero for an orthographic view.
-    let growth = texels * (abs(plane.x) + abs(plane.y)) * max(dot(rows[3].xyz, normal), 0.0);
-    let distance = offset / (1.0 - min(growth, 0.9));
+    let growth = texels * (abs(plane.x) + abs(plane.y)) * max(dot(shadow_w_row(view).xyz, normal), 0.0);
+    let distance = offset / (1.0 - min(growth, 0.9)) + view.offset_world;
     let moved = relative + normal * select(0.0, distance, distance > 0.0);
     return shadow_receiver_at(view, moved, vec2<f32>(0.0), view.depth_error);
 }

@@ -11,8 +11,8 @@ const SHADOW_MAX_GRADIENT: f32 = 1e4;
 
 fn shadow_receiver_plane(view: ShadowView, position: vec3<f32>, normal: vec3<f32>) -> ShadowReceiver {
     let relative = position - view.anchor;
-    let flat_plane = shadow_plane(view, relative, normal);
-    let offset = shadow_normal_offset(view, relative, flat_plane, view.offset_texels);
+    let surface = shadow_plane(view, relative, normal);
+    let offset = shadow_normal_offset(view, relative, surface, view.offset_texels) + view.offset_world;
     let lifted = relative + normal * offset;
     let plane = shadow_plane(view, lifted, normal);
     // A plane seen edge on has no gradient, and neither has a normal that is zero or not a number.

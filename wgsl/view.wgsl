@@ -11,7 +11,7 @@ struct ShadowView {
     plane_across: vec4<f32>,
     plane_down: vec4<f32>,
     plane_depth: vec4<f32>,
-    // Toward the light, homogeneous and relative to the anchor: w = 0 for a direction, 1 for a place.
+    // Toward the light along the view's axis; w = 1 for a local light, whose place is the anchor, 0 for a directional one.
     light: vec4<f32>,
     // A point of render space inside the view.
     anchor: vec3<f32>,
@@ -25,11 +25,18 @@ struct ShadowView {
     lateral_error: f32,
     // Offset along the normal in texels times |nx| + |ny| of the normal in light space.
     offset_texels: f32,
+    // Offset along the normal in world units, for the rounding of render coordinates.
+    offset_world: f32,
     // Manual bias in world units.
     manual_constant: f32,
     manual_slope: f32,
     // Edge sharpness of gathered filters; 1 is plain.
     sharpness: f32,
+    // World distance from the anchor beyond which a local light does not reach.
+    range: f32,
+    // Cosine of the half-angle of a cone around the view's axis; -2 for none.
+    cone_cosine: f32,
+    padding: f32,
 }
 
 struct ShadowReceiver {
@@ -41,7 +48,8 @@ struct ShadowReceiver {
     layer: u32,
     map_size: f32,
     sharpness: f32,
-    // False where the map says nothing of this place: beyond its sides, behind a local light, beyond the far plane.
+    // False where the map says nothing of this place: beyond its sides or its far plane, behind a local light, outside its cone
+    // or range.
     inside: bool,
 }
 
@@ -56,6 +64,9 @@ fn shadow_receiver_at(
     let texel = place.xy / place.w;
     let depth = place.z / place.w;
     let within = all(texel >= view.inner.xy) && all(texel <= view.inner.zw);
+    let distance_squared = dot(relative, relative);
+    let reached = distance_squared <= view.range * view.range
+        && -dot(relative, view.light.xyz) >= view.cone_cosine * sqrt(distance_squared);
     var receiver: ShadowReceiver;
     receiver.texel = texel;
     receiver.depth = depth + depth_offset + depth * view.depth_error_relative;
@@ -63,7 +74,7 @@ fn shadow_receiver_at(
     receiver.layer = view.layer;
     receiver.map_size = view.map_size;
     receiver.sharpness = view.sharpness;
-    receiver.inside = within && place.w > 0.0 && depth >= 0.0;
+    receiver.inside = within && reached && place.w > 0.0 && depth >= 0.0;
     return receiver;
 }
 
@@ -85,7 +96,12 @@ fn shadow_normal_offset(
     plane: vec3<f32>,
     texels: f32,
 ) -> f32 {
-    let rows = transpose(view.texel_from_anchor);
-    let w = dot(rows[3], vec4<f32>(relative, 1.0));
+    let w = dot(shadow_w_row(view), vec4<f32>(relative, 1.0));
     return texels * max(w, 0.0) * (abs(plane.x) + abs(plane.y));
+}
+
+// What w is made of: one for an orthographic view, the distance along the axis for a perspective one.
+fn shadow_w_row(view: ShadowView) -> vec4<f32> {
+    let columns = view.texel_from_anchor;
+    return vec4<f32>(columns[0].w, columns[1].w, columns[2].w, columns[3].w);
 }

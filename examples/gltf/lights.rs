@@ -6,7 +6,9 @@ use glam::Vec3;
 use serde_json::{Value, json};
 use wgpu_shadows::{
     Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowReport, ShadowSource,
+    OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowBindings,
+    ShadowBindingsDescriptor, ShadowCaster, ShadowReport, ShadowSource, SpotFrame, SpotLight,
+    SpotShadow, SpotShadowDescriptor,
 };
 
 use crate::device::Gpu;
@@ -20,18 +22,24 @@ pub const MAX_LIGHTS: usize = 8;
 /// A light's shadow maps.
 enum Shadow {
     Directional(Box<DirectionalShadow>),
+    Spot(Box<SpotShadow>),
+    Omni(Box<OmniShadow>),
 }
 
 impl Shadow {
     fn source(&self) -> ShadowSource<'_> {
         match self {
             Self::Directional(shadow) => shadow.source(),
+            Self::Spot(shadow) => shadow.source(),
+            Self::Omni(shadow) => shadow.source(),
         }
     }
 
     fn report(&self) -> &ShadowReport {
         match self {
             Self::Directional(shadow) => shadow.report(),
+            Self::Spot(shadow) => shadow.report(),
+            Self::Omni(shadow) => shadow.report(),
         }
     }
 }
@@ -110,8 +118,10 @@ impl SceneLights {
     ) -> Result<(), String> {
         let camera = scene.camera.with_max_distance(self.max_distance);
         for (light, shadow) in self.lights.iter().zip(&mut self.shadows) {
+            let Some(shadow) = shadow else { continue };
+            let position_world = scene.origin + light.position_render.as_dvec3();
             match shadow {
-                Some(Shadow::Directional(shadow)) => shadow.record(
+                Shadow::Directional(shadow) => shadow.record(
                     &gpu.device,
                     encoder,
                     &DirectionalFrame {
@@ -122,7 +132,36 @@ impl SceneLights {
                         receivers: &[],
                     },
                 ),
-                None => continue,
+                Shadow::Spot(shadow) => shadow.record(
+                    &gpu.device,
+                    encoder,
+                    &SpotFrame {
+                        origin: scene.origin,
+                        light: SpotLight {
+                            position_world,
+                            direction: light.direction,
+                            outer_angle_radians: light.kind.outer_angle_radians(),
+                            range: light.range,
+                        },
+                        camera: Some(camera),
+                        casters,
+                        receivers: &[],
+                    },
+                ),
+                Shadow::Omni(shadow) => shadow.record(
+                    &gpu.device,
+                    encoder,
+                    &OmniFrame {
+                        origin: scene.origin,
+                        light: OmniLight {
+                            position_world,
+                            range: light.range,
+                        },
+                        camera: Some(camera),
+                        casters,
+                        receivers: &[],
+                    },
+                ),
             }
             .map_err(|error| error.to_string())?;
         }
@@ -134,6 +173,8 @@ impl SceneLights {
         for shadow in self.shadows.iter_mut().flatten() {
             match shadow {
                 Shadow::Directional(shadow) => shadow.invalidate(),
+                Shadow::Spot(shadow) => shadow.invalidate(),
+                Shadow::Omni(shadow) => shadow.invalidate(),
             }
         }
     }
@@ -219,25 +260,43 @@ fn shadow_of(gpu: &Gpu, light: &Light, options: &Options) -> Result<Option<Shado
     if options.no_shadows {
         return Ok(None);
     }
-    match light.kind {
-        LightKind::Directional => DirectionalShadow::new(
-            &gpu.device,
-            &DirectionalShadowDescriptor {
+    let (device, map_size) = (&gpu.device, options.map_size);
+    let (filter, bias) = (options.filter, options.bias);
+    let made = match light.kind {
+        LightKind::Directional => {
+            let descriptor = DirectionalShadowDescriptor {
                 label: Some("sun"),
-                map_size: options.map_size,
+                map_size,
                 cascades: options.cascades,
-                filter: options.filter,
-                bias: options.bias,
+                filter,
+                bias,
                 ..Default::default()
-            },
-        )
-        .map(|shadow| Some(Shadow::Directional(Box::new(shadow))))
-        .map_err(|error| error.to_string()),
-        LightKind::Point | LightKind::Spot { .. } => {
-            eprintln!("note: {:?} lights are drawn without shadows", light.kind);
-            Ok(None)
+            };
+            DirectionalShadow::new(device, &descriptor)
+                .map(|shadow| Shadow::Directional(Box::new(shadow)))
         }
-    }
+        LightKind::Spot { .. } => {
+            let label = Some("spot");
+            let descriptor = SpotShadowDescriptor {
+                label,
+                map_size,
+                filter,
+                bias,
+            };
+            SpotShadow::new(device, &descriptor).map(|shadow| Shadow::Spot(Box::new(shadow)))
+        }
+        LightKind::Point => {
+            let label = Some("lamp");
+            let descriptor = OmniShadowDescriptor {
+                label,
+                map_size,
+                filter,
+                bias,
+            };
+            OmniShadow::new(device, &descriptor).map(|shadow| Shadow::Omni(Box::new(shadow)))
+        }
+    };
+    made.map(Some).map_err(|error| error.to_string())
 }
 
 /// `light_a`, `light_b` and so on.

@@ -60,6 +60,18 @@ pub enum LightKind {
     },
 }
 
+impl LightKind {
+    /// Half of the angle that a spot spans, just below a right angle at most.
+    pub fn outer_angle_radians(self) -> f32 {
+        match self {
+            Self::Spot {
+                outer_cone_radians, ..
+            } => outer_cone_radians.clamp(1e-3, 1.57),
+            Self::Directional | Self::Point => std::f32::consts::PI,
+        }
+    }
+}
+
 /// A light of the file.
 #[derive(Clone, Copy, Debug)]
 pub struct Light {

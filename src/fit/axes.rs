@@ -37,6 +37,13 @@ impl LightAxes {
         }
     }
 
+    /// Axes of a view that looks along `forward` with `up` upward; unit vectors at right angles.
+    pub(crate) fn looking(forward: DVec3, up: DVec3) -> Self {
+        Self {
+            light_from_world: DMat3::from_cols(forward.cross(up), up, -forward).transpose(),
+        }
+    }
+
     /// World direction of the light's x axis.
     pub fn right(&self) -> DVec3 {
         self.light_from_world.row(0)

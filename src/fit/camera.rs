@@ -41,18 +41,19 @@ impl CameraView {
     }
 
     /// The visible volume in render space.
-    pub(crate) fn frustum(&self) -> Result<CameraFrustum, ShadowError> {
-        let view_from_render = checked(
-            &self.view_from_render,
-            "DirectionalFrame::coverage.view_from_render",
-        )?;
-        let clip_from_view = checked(
-            &self.clip_from_view,
-            "DirectionalFrame::coverage.clip_from_view",
-        )?;
+    ///
+    /// The arguments are the paths of the three fields in the caller's frame, for its errors.
+    pub(crate) fn frustum(
+        &self,
+        view_field: &'static str,
+        clip_field: &'static str,
+        distance_field: &'static str,
+    ) -> Result<CameraFrustum, ShadowError> {
+        let view_from_render = checked(&self.view_from_render, view_field)?;
+        let clip_from_view = checked(&self.clip_from_view, clip_field)?;
         if !(self.max_distance > 0.0) {
             return Err(ShadowError::OutOfRange {
-                field: "DirectionalFrame::coverage.max_distance",
+                field: distance_field,
                 rule: "above 0 (infinity allowed)",
                 value: self.max_distance.to_string(),
             });
@@ -85,10 +86,7 @@ impl CameraView {
         let eye = render_from_view.transform_point3(DVec3::ZERO);
         let forward = render_from_view.transform_vector3(forward_view).normalize();
         if !(eye.is_finite() && forward.is_finite()) {
-            return Err(camera_matrix(
-                "DirectionalFrame::coverage.view_from_render",
-                &self.view_from_render,
-            ));
+            return Err(camera_matrix(view_field, &self.view_from_render));
         }
         if self.max_distance.is_finite() {
             planes.push(HalfSpace {

@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 
+use crate::Aabb;
 use crate::fit::axes::{LightAxes, LightBox};
 use crate::fit::camera::CameraFrustum;
 use crate::fit::split::CascadeSplit;
-use crate::fit::window::{OrthoWindow, WindowRequest};
-use crate::{Aabb, ShadowError};
+use crate::fit::window::{DepthRange, MapWindow, OrthoWindow, WindowRequest};
 
 /// Most cascades that one light may have.
 pub(crate) const MAX_CASCADES: usize = 8;
@@ -64,13 +64,13 @@ struct VisibleReceivers {
 }
 
 impl DirectionalFit {
-    /// The windows for this frame. `casters` is filled with one entry per caster, in order. On an error, `self` is unchanged.
+    /// The windows for this frame. `casters` is filled with one entry per caster, in order.
     pub fn fit(
         &self,
         input: &FitInput<'_>,
         limits: &FitLimits,
         casters: &mut Vec<CasterBounds>,
-    ) -> Result<Self, ShadowError> {
+    ) -> Self {
         casters.clear();
         let visible = visible_receivers(input);
         casters.extend(input.casters.iter().map(|bounds| CasterBounds {
@@ -90,13 +90,10 @@ impl DirectionalFit {
                     self.held[cascade].as_ref(),
                 )
             });
-            if let Some(window) = window {
-                check_representable(&window, input)?;
-                next.held[cascade] = Some(window);
-            }
+            next.held[cascade] = window.or(next.held[cascade]);
             next.windows[cascade] = window;
         }
-        Ok(next)
+        next
     }
 
     /// Light-space box of the receivers that cascade `cascade` is for; none where there are none.
@@ -213,25 +210,32 @@ fn fit_window(
         covered.max = required.max.min(shadows.max);
     }
     covered.max.z = shadows.max.z.max(required.min.z);
-    let mut request = WindowRequest {
-        required: covered,
+    let request = WindowRequest {
+        min: covered.min.truncate(),
+        max: covered.max.truncate(),
         map_size: limits.map_size,
         margin_texels: limits.margin_texels,
         texel_floor: texel_floor(input, &covered),
+        whole: f64::INFINITY,
     };
-    let mut window = OrthoWindow::fit(&request, held);
+    let plane = MapWindow::fit(&request, held.map(|held| &held.plane));
+    let depth = |near| {
+        let least = plane.texel.max_element();
+        DepthRange::fit(covered.min.z, near, least, held.map(|held| &held.depth))
+    };
+    let window = OrthoWindow {
+        plane,
+        depth: depth(covered.max.z),
+    };
     // The rounded window is larger than what was asked for: casters that touch only its rim must lie in its depth range too.
     let nearest = casters
         .iter()
         .filter(|caster| caster.can_shadow && window.holds_part_of(&caster.light))
         .fold(covered.max.z, |near, caster| near.max(caster.light.max.z));
-    if nearest > window.near {
-        request.required.max.z = nearest;
-        let deepened = OrthoWindow::fit(&request, held);
-        window.far = deepened.far;
-        window.near = deepened.near;
-    }
-    Some(window)
+    Some(OrthoWindow {
+        depth: depth(nearest),
+        ..window
+    })
 }
 
 /// Four ulps of f32 at the farthest render coordinate of the covered box: finer texels than positions would resolve nothing.
@@ -242,28 +246,4 @@ fn texel_floor(input: &FitInput<'_>, covered: &LightBox) -> f64 {
         .max((covered.max - origin_light).abs())
         .max_element();
     4.0 * f64::from(f32::EPSILON) * reach.max(f64::from(f32::MIN_POSITIVE) * 1e8)
-}
-
-fn check_representable(window: &OrthoWindow, input: &FitInput<'_>) -> Result<(), ShadowError> {
-    let extent = (window.max() - window.min)
-        .max_element()
-        .max(window.depth_range());
-    let origin_light = input.axes.light_from_world * input.origin;
-    let middle = (window.min + window.max()) * 0.5;
-    let distance = (middle.extend(window.far) - origin_light)
-        .abs()
-        .max_element();
-    // The square must fit as well: matrices hold reciprocals and products of these.
-    let largest = f64::from(f32::MAX).sqrt();
-    let smallest = f64::from(f32::MIN_POSITIVE).sqrt();
-    if extent.max(distance) < largest
-        && window.texel.min_element().min(window.depth_range()) > smallest
-    {
-        Ok(())
-    } else {
-        Err(ShadowError::ViewNotRepresentable {
-            extent_world: extent,
-            distance_world: distance,
-        })
-    }
 }

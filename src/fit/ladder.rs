@@ -1,8 +1,15 @@
 //! A geometric ladder of sizes, so that a fit changes its scale rarely, and then clearly.
 
-/// Rungs per doubling. A rung is at most 2^(1/4) = 1.19 times what was asked for, 1.09 on average; finer rungs are tighter and
-/// change more often.
-const RUNGS_PER_OCTAVE: f64 = 4.0;
+/// The rungs from one power of two to the next: 2^(0/4), 2^(1/4), 2^(2/4), 2^(3/4). A rung is at most 1.19 times what was asked
+/// for, 1.09 on average; finer rungs are tighter and change more often. As a table, so that a scene scaled by a power of two
+/// has the same rungs to the bit.
+const RUNGS: [f64; 5] = [
+    1.0,
+    1.189_207_115_002_721,
+    std::f64::consts::SQRT_2,
+    1.681_792_830_507_429,
+    2.0,
+];
 
 /// A held rung is left for a smaller one only when the smaller one has this much room to spare, so that a size that trembles
 /// around a rung does not change it every frame.
@@ -10,14 +17,13 @@ const SHRINK_SLACK: f64 = 1.05;
 
 /// The smallest rung that is at least `size` (positive and finite).
 pub(crate) fn rung_up(size: f64) -> f64 {
-    let exponent = (size.log2() * RUNGS_PER_OCTAVE).ceil();
-    let rung = (exponent / RUNGS_PER_OCTAVE).exp2();
-    // log2 and exp2 round: a size that is itself a rung must not fall a hair short of it.
-    if rung >= size {
-        rung
-    } else {
-        ((exponent + 1.0) / RUNGS_PER_OCTAVE).exp2()
-    }
+    // log2 may round to the next integer at a power of two; the octave below or above then serves as well.
+    let octave = size.log2().floor().exp2();
+    RUNGS
+        .iter()
+        .map(|rung| rung * octave)
+        .find(|rung| *rung >= size)
+        .unwrap_or(4.0 * octave)
 }
 
 /// The rung to use for `size` when `held` is in use: `held` while it is large enough and no smaller rung fits with slack.

@@ -5,9 +5,10 @@
 //! region.rs       exact vertices of (convex region ∩ box)
 //! axes.rs         world-fixed light axes, boxes in light space
 //! ladder.rs       quantised extents with hysteresis
-//! window.rs       the orthographic window of one cascade, snapped to whole texels
+//! window.rs       the rectangle of a map plane that a view covers, snapped to whole texels
 //! split.rs        where one cascade ends and the next begins
 //! directional.rs  all of it put together for a sun
+//! local.rs        the same for the views of a spot or point light
 //! view.rs         ShadowView: the value that the upper floors render and sample with
 //! ```
 
@@ -15,6 +16,7 @@ mod axes;
 mod camera;
 mod directional;
 mod ladder;
+mod local;
 mod region;
 mod split;
 mod view;
@@ -23,7 +25,10 @@ mod window;
 pub use axes::LightAxes;
 pub(crate) use axes::LightBox;
 pub use camera::CameraView;
-pub(crate) use directional::{CasterBounds, DirectionalFit, FitInput, FitLimits, Region};
+pub(crate) use directional::{
+    CasterBounds, DirectionalFit, FitInput, FitLimits, MAX_CASCADES, Region,
+};
+pub(crate) use local::{LocalFit, LocalInput, MAX_LOCAL_VIEWS};
 pub use split::CascadeSplit;
 pub use view::ShadowView;
 pub(crate) use view::ViewPlacement;

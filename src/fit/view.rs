@@ -1,9 +1,10 @@
 //! `ShadowView`: one depth render of a light, as a value.
 
-use glam::{DMat3, DMat4, DVec3, DVec4, Mat4, Vec2, Vec3};
+use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, Mat4, Vec2, Vec3};
 
-use crate::fit::LightAxes;
-use crate::fit::window::OrthoWindow;
+use crate::ShadowError;
+use crate::fit::window::{MapWindow, OrthoWindow};
+use crate::fit::{LightAxes, LocalFit};
 
 /// One depth render: a cascade of a sun, the map of a spot, a face of a point light.
 ///
@@ -29,6 +30,18 @@ pub(crate) enum ViewPlacement {
         axes: LightAxes,
         window: OrthoWindow,
     },
+    Perspective {
+        axes: LightAxes,
+        position_world: DVec3,
+        /// In tangents.
+        window: MapWindow,
+        /// World distance of the near plane.
+        near: f64,
+        /// World distance beyond which nothing receives.
+        reach: f64,
+        /// Cosine of the half-angle of a cone; -2 for none.
+        cone_cosine: f64,
+    },
 }
 
 impl ShadowView {
@@ -39,15 +52,16 @@ impl ShadowView {
         origin: DVec3,
         layer: u32,
     ) -> Self {
-        let size = window.max() - window.min;
+        let (plane, depth) = (&window.plane, &window.depth);
+        let size = plane.max() - plane.min;
         let light_from_world = axes.light_from_world;
         let world_from_light = light_from_world.transpose();
-        let middle = (window.min + size * 0.5).extend((window.near + window.far) * 0.5);
+        let middle = (plane.min + size * 0.5).extend((depth.near + depth.far) * 0.5);
         let anchor_render = (world_from_light * middle - origin).as_vec3();
         // The anchor is rounded to f32; everything after it starts from the rounded one, so nothing is lost.
         let anchor_light = light_from_world * (anchor_render.as_dvec3() + origin);
-        let scale = DVec3::new(2.0 / size.x, 2.0 / size.y, 1.0 / window.depth_range());
-        let offset = (anchor_light - window.min.extend(window.far)) * scale;
+        let scale = DVec3::new(2.0 / size.x, 2.0 / size.y, 1.0 / depth.length());
+        let offset = (anchor_light - plane.min.extend(depth.far)) * scale;
         let linear = DMat3::from_diagonal(scale) * light_from_world;
         let clip_from_anchor = DMat4::from_cols(
             linear.x_axis.extend(0.0),
@@ -55,10 +69,10 @@ impl ShadowView {
             linear.z_axis.extend(0.0),
             DVec4::new(offset.x - 1.0, offset.y - 1.0, offset.z, 1.0),
         );
-        let half = size.extend(window.depth_range()) * 0.5;
+        let half = size.extend(depth.length()) * 0.5;
         Self {
             layer,
-            map_size: window.map_size,
+            map_size: plane.map_size,
             anchor_render,
             clip_from_anchor,
             placement: ViewPlacement::Orthographic {
@@ -66,6 +80,67 @@ impl ShadowView {
                 window: *window,
             },
             render_reach: f64::from(anchor_render.abs().max_element()) + half.length(),
+        }
+    }
+
+    /// The view of a local light through a window of tangents.
+    pub(crate) fn perspective(
+        axes: &LightAxes,
+        position_world: DVec3,
+        window: &MapWindow,
+        fit: &LocalFit,
+        cone_cosine: f64,
+        origin: DVec3,
+        layer: u32,
+    ) -> Self {
+        let (near, reach) = (fit.near, fit.reach);
+        let anchor_render = (position_world - origin).as_vec3();
+        let size = window.max() - window.min;
+        // clip = 2 (tangent - min) / size * w - w, with w = -z and tangent * w = x or y; depth * w = near.
+        let scale = 2.0 / size;
+        let shift = DVec2::ONE + window.min * scale;
+        let clip_from_light = DMat4::from_cols(
+            DVec4::new(scale.x, 0.0, 0.0, 0.0),
+            DVec4::new(0.0, scale.y, 0.0, 0.0),
+            DVec4::new(shift.x, shift.y, 0.0, -1.0),
+            DVec4::new(0.0, 0.0, near, 0.0),
+        );
+        let light_from_anchor = DMat4::from_mat3(axes.light_from_world);
+        Self {
+            layer,
+            map_size: window.map_size,
+            anchor_render,
+            clip_from_anchor: clip_from_light * light_from_anchor,
+            placement: ViewPlacement::Perspective {
+                axes: *axes,
+                position_world,
+                window: *window,
+                near,
+                reach,
+                cone_cosine,
+            },
+            render_reach: f64::from(anchor_render.abs().max_element()) + reach,
+        }
+    }
+
+    /// The view, if its matrices and its place can be expressed in f32.
+    pub(crate) fn checked(self) -> Result<Self, ShadowError> {
+        // The square must fit as well: matrices hold reciprocals and products of these.
+        let largest = f64::from(f32::MAX).sqrt();
+        let extent = f64::from(self.texel_size_world().max_element()) * f64::from(self.map_size);
+        let extent = extent.max(f64::from(self.depth_range_world()));
+        let small = f64::from(self.texel_size_world().min_element());
+        let fits = extent < largest
+            && self.render_reach < largest
+            && small > largest.recip()
+            && f64::from(self.depth_range_world()) > largest.recip();
+        if fits {
+            Ok(self)
+        } else {
+            Err(ShadowError::ViewNotRepresentable {
+                extent_world: extent,
+                distance_world: self.render_reach,
+            })
         }
     }
 
@@ -95,17 +170,20 @@ impl ShadowView {
         (self.clip_from_anchor * shift).as_mat4()
     }
 
-    /// World size of a texel along the map's x and y: constant for an orthographic view.
+    /// World size of a texel along the map's x and y: constant for an orthographic view, at the end of the light's reach for a
+    /// perspective one, where it is largest.
     pub fn texel_size_world(&self) -> Vec2 {
         match &self.placement {
-            ViewPlacement::Orthographic { window, .. } => window.texel.as_vec2(),
+            ViewPlacement::Orthographic { window, .. } => window.plane.texel.as_vec2(),
+            ViewPlacement::Perspective { window, reach, .. } => (window.texel * *reach).as_vec2(),
         }
     }
 
-    /// World distance between the far and the near plane.
+    /// World distance from the near plane to the far plane, or to the end of the light's reach.
     pub fn depth_range_world(&self) -> f32 {
         match &self.placement {
-            ViewPlacement::Orthographic { window, .. } => window.depth_range() as f32,
+            ViewPlacement::Orthographic { window, .. } => window.depth.length() as f32,
+            ViewPlacement::Perspective { near, reach, .. } => (reach - near) as f32,
         }
     }
 
@@ -125,35 +203,62 @@ impl ShadowView {
         texel_from_clip * self.clip_from_anchor
     }
 
-    /// Toward the light, homogeneous and relative to the anchor: `w` 0 for a direction, 1 for a place.
-    pub(crate) fn light_from_anchor(&self) -> DVec4 {
+    /// Toward the light along the view's axis, and whether the light is local (1) or directional (0).
+    pub(crate) fn light_axis(&self) -> DVec4 {
         match &self.placement {
             ViewPlacement::Orthographic { axes, .. } => axes.toward_light().extend(0.0),
+            ViewPlacement::Perspective { axes, .. } => axes.toward_light().extend(1.0),
         }
     }
 
-    /// Rounding error of a depth comparison, as ndc depth: `(absolute, relative to the depth itself)`.
-    ///
-    /// `q + 4u` of the depth range for storing and comparing (q one ulp of f32 at 1, u half of it), and `4u` of the render
-    /// coordinates that both sides start from.
+    /// World distance beyond which a local light does not reach; infinite for a directional one.
+    pub(crate) fn reach_world(&self) -> f64 {
+        match &self.placement {
+            ViewPlacement::Orthographic { .. } => f64::INFINITY,
+            ViewPlacement::Perspective { reach, .. } => *reach,
+        }
+    }
+
+    /// Cosine of the half-angle of a cone; -2 for none.
+    pub(crate) fn cone_cosine(&self) -> f64 {
+        match &self.placement {
+            ViewPlacement::Orthographic { .. } => -2.0,
+            ViewPlacement::Perspective { cone_cosine, .. } => *cone_cosine,
+        }
+    }
+
+    /// Rounding error of a depth comparison as ndc depth, absolute and relative to the depth: one ulp (2u) for storing and
+    /// comparing and `4u` for the transform. Orthographic depths err relative to their range; perspective ones relative to
+    /// themselves, but for the rasteriser's interpolation, which errs by the largest depth of a triangle.
     pub(crate) fn depth_error_ndc(&self) -> (f64, f64) {
-        let unit = f64::from(f32::EPSILON) * 0.5;
         match &self.placement {
-            ViewPlacement::Orthographic { window, .. } => {
-                let reach = self.render_reach / window.depth_range();
-                (6.0 * unit + 4.0 * unit * reach, 0.0)
+            ViewPlacement::Orthographic { .. } => (6.0 * UNIT_ROUNDOFF, 0.0),
+            ViewPlacement::Perspective { .. } => (2.0 * UNIT_ROUNDOFF, 6.0 * UNIT_ROUNDOFF),
+        }
+    }
+
+    /// Worst rounding error of a depth comparison in world units: what [`ShadowView::depth_error_ndc`] comes to.
+    pub(crate) fn depth_error_world(&self) -> f64 {
+        let (absolute, relative) = self.depth_error_ndc();
+        match &self.placement {
+            ViewPlacement::Orthographic { window, .. } => absolute * window.depth.length(),
+            // depth = near / w, so a depth error e is w² / near · e of distance.
+            ViewPlacement::Perspective { near, reach, .. } => {
+                reach * reach / near * absolute + reach * relative
             }
         }
     }
 
-    /// Rounding error of a lookup across the map, in texels: `6uN` for the arithmetic and `4u` of the render coordinates.
+    /// Rounding error of the render coordinates that casters and receivers start from, in world units: `4u` of the largest.
+    pub(crate) fn position_error_world(&self) -> f64 {
+        4.0 * UNIT_ROUNDOFF * self.render_reach
+    }
+
+    /// Rounding error of a lookup's arithmetic across the map, in texels: `6uN`.
     pub(crate) fn lateral_error_texels(&self) -> f64 {
-        let unit = f64::from(f32::EPSILON) * 0.5;
-        match &self.placement {
-            ViewPlacement::Orthographic { window, .. } => {
-                6.0 * unit * f64::from(self.map_size)
-                    + 4.0 * unit * self.render_reach / window.texel.min_element()
-            }
-        }
+        6.0 * UNIT_ROUNDOFF * f64::from(self.map_size)
     }
 }
+
+/// u of f32: half an ulp of one.
+const UNIT_ROUNDOFF: f64 = f32::EPSILON as f64 * 0.5;

@@ -1,4 +1,4 @@
-//! The orthographic window of one cascade: quantised extents, snapped to whole texels in absolute light space.
+//! The rectangle of the map plane that one view covers: quantised extents, snapped to whole texels in absolute coordinates.
 
 use glam::DVec2;
 
@@ -8,47 +8,46 @@ use crate::fit::ladder::rung_with_hysteresis;
 /// Steps into which a depth range is divided; its ends lie on whole steps, so that they rarely move.
 const DEPTH_STEPS: f64 = 64.0;
 
-/// What one window must hold, and at which resolution.
+/// What one window must hold, and at which resolution. Units are the map plane's own: world units in light space for an
+/// orthographic view, tangents of angles for a perspective one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WindowRequest {
-    /// xy: what must be covered. z: the deepest receiver (min) and the nearest caster (max). Absolute light space.
-    pub required: LightBox,
+    /// Least x and y to cover.
+    pub min: DVec2,
+    /// Greatest x and y to cover.
+    pub max: DVec2,
     /// Texels per side of the map.
     pub map_size: u32,
     /// Texels kept free on every side, so that a filter's kernel stays inside.
     pub margin_texels: u32,
-    /// Finest texel that render space can tell apart at this place, in world units.
+    /// Finest texel that render space can tell apart at this place.
     pub texel_floor: f64,
+    /// Half the side of a square around the plane's origin that holds all there can be, margins included; infinite for none.
+    /// Where a rung would be no finer, the window is that square, which never moves.
+    pub whole: f64,
 }
 
-/// A rectangle of whole texels and a depth range, in absolute light space.
+/// A rectangle of whole texels in the plane of a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct OrthoWindow {
-    /// Least x and y: a whole number of texels from the world's origin.
+pub(crate) struct MapWindow {
+    /// Least x and y: a whole number of texels from the plane's origin.
     pub min: DVec2,
     /// Size of a texel along x and y.
     pub texel: DVec2,
-    /// z of the far plane (ndc 0).
-    pub far: f64,
-    /// z of the near plane (ndc 1); greater than `far`, since z grows toward the light.
-    pub near: f64,
     /// Texels per side.
     pub map_size: u32,
 }
 
-impl OrthoWindow {
+impl MapWindow {
     /// The window for `request`. The `held` one stays wholly or in part as long as it serves, so that small motions of a
     /// camera change nothing.
     pub fn fit(request: &WindowRequest, held: Option<&Self>) -> Self {
         let held = held.filter(|held| held.map_size == request.map_size);
         let (min_x, texel_x) = fit_axis(request, held, 0);
         let (min_y, texel_y) = fit_axis(request, held, 1);
-        let (far, near) = fit_depth(request, held, texel_x.max(texel_y));
         Self {
             min: DVec2::new(min_x, min_y),
             texel: DVec2::new(texel_x, texel_y),
-            far,
-            near,
             map_size: request.map_size,
         }
     }
@@ -57,31 +56,21 @@ impl OrthoWindow {
     pub fn max(&self) -> DVec2 {
         self.min + self.texel * f64::from(self.map_size)
     }
-
-    /// From the near to the far plane in world units.
-    pub fn depth_range(&self) -> f64 {
-        self.near - self.far
-    }
-
-    /// Can geometry in `bounds` leave a mark in this map?
-    pub fn holds_part_of(&self, bounds: &LightBox) -> bool {
-        let as_box = LightBox {
-            min: self.min.extend(self.far),
-            max: self.max().extend(self.near),
-        };
-        as_box.overlaps_xy(bounds) && bounds.max.z > self.far
-    }
 }
 
 /// Start and texel size along one axis.
-fn fit_axis(request: &WindowRequest, held: Option<&OrthoWindow>, axis: usize) -> (f64, f64) {
-    let (low, high) = (request.required.min[axis], request.required.max[axis]);
+fn fit_axis(request: &WindowRequest, held: Option<&MapWindow>, axis: usize) -> (f64, f64) {
+    let (low, high) = (request.min[axis], request.max[axis]);
     let size = f64::from(request.map_size);
     let margin = f64::from(request.margin_texels);
     // One texel is lost to snapping. A map smaller than its margins keeps one texel and a window that is all margin.
     let usable = (size - 2.0 * margin - 1.0).max(1.0);
     let texel_needed = ((high - low) / usable).max(request.texel_floor);
     let texel = rung_with_hysteresis(texel_needed, held.map(|held| held.texel[axis]));
+    let whole_texel = 2.0 * request.whole / size;
+    if texel >= whole_texel {
+        return (-request.whole, whole_texel);
+    }
     if let Some(held) = held.filter(|held| held.texel[axis] == texel) {
         let start = held.min[axis];
         if start + margin * texel <= low && high <= start + (size - margin) * texel {
@@ -94,58 +83,95 @@ fn fit_axis(request: &WindowRequest, held: Option<&OrthoWindow>, axis: usize) ->
     ((first - margin - spare) * texel, texel)
 }
 
-/// Far and near plane.
-fn fit_depth(request: &WindowRequest, held: Option<&OrthoWindow>, texel: f64) -> (f64, f64) {
-    let (far, near) = (request.required.min.z, request.required.max.z);
-    // Room for one step behind the deepest receiver, so that rounding never puts it behind the far plane, and two of snapping.
-    let needed = (near - far).max(texel) * DEPTH_STEPS / (DEPTH_STEPS - 4.0);
-    let range = rung_with_hysteresis(needed, held.map(OrthoWindow::depth_range));
-    let step = range / DEPTH_STEPS;
-    if let Some(held) = held.filter(|held| held.depth_range() == range) {
-        if held.far + step <= far && near <= held.near {
-            return (held.far, held.near);
+/// Far and near plane of an orthographic view, on whole steps of its range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct DepthRange {
+    /// z of the far plane (ndc 0).
+    pub far: f64,
+    /// z of the near plane (ndc 1); greater than `far`, since z grows toward the light.
+    pub near: f64,
+}
+
+impl DepthRange {
+    /// A range that holds `far..near` and is at least `least` deep.
+    pub fn fit(far: f64, near: f64, least: f64, held: Option<&Self>) -> Self {
+        // One step behind the deepest receiver, so that rounding never puts it behind the far plane, and two for snapping.
+        let needed = (near - far).max(least) * DEPTH_STEPS / (DEPTH_STEPS - 4.0);
+        let range = rung_with_hysteresis(needed, held.map(Self::length));
+        let step = range / DEPTH_STEPS;
+        match held {
+            Some(held) if held.length() == range && held.far + step <= far && near <= held.near => {
+                *held
+            }
+            _ => {
+                let far = ((far / step).floor() - 1.0) * step;
+                Self {
+                    far,
+                    near: far + range,
+                }
+            }
         }
     }
-    let far = ((far / step).floor() - 1.0) * step;
-    (far, far + range)
+
+    /// World units from the far to the near plane.
+    pub fn length(&self) -> f64 {
+        self.near - self.far
+    }
+}
+
+/// The window and depth range of an orthographic view, in absolute light space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct OrthoWindow {
+    pub plane: MapWindow,
+    pub depth: DepthRange,
+}
+
+impl OrthoWindow {
+    /// Can geometry in `bounds` leave a mark in this map?
+    pub fn holds_part_of(&self, bounds: &LightBox) -> bool {
+        let as_box = LightBox {
+            min: self.plane.min.extend(self.depth.far),
+            max: self.plane.max().extend(self.depth.near),
+        };
+        as_box.overlaps_xy(bounds) && bounds.max.z > self.depth.far
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec3;
 
-    fn request(min: DVec3, max: DVec3) -> WindowRequest {
+    fn request(min: DVec2, max: DVec2) -> WindowRequest {
         WindowRequest {
-            required: LightBox { min, max },
+            min,
+            max,
             map_size: 512,
             margin_texels: 3,
             texel_floor: 1e-6,
+            whole: f64::INFINITY,
         }
     }
 
-    fn assert_holds(window: &OrthoWindow, request: &WindowRequest) {
+    fn assert_holds(window: &MapWindow, request: &WindowRequest) {
         let margin = window.texel * f64::from(request.margin_texels);
-        let required = request.required;
-        assert!((window.min + margin).cmple(required.min.truncate()).all());
-        assert!((window.max() - margin).cmpge(required.max.truncate()).all());
-        assert!(window.far < required.min.z && window.near >= required.max.z);
+        assert!((window.min + margin).cmple(request.min).all());
+        assert!((window.max() - margin).cmpge(request.max).all());
     }
 
-    /// Wherever the required box lies, the window holds it with its margin, starts on a whole texel, and is at most one rung
-    /// (1.19) and four texels larger than asked.
+    /// Wherever the required rectangle lies, the window holds it with its margin, starts on a whole texel, and its texel is at
+    /// most one rung (1.19 times) larger than asked.
     #[test]
     fn windows_hold_what_they_must_and_little_more() {
         for step in 0..2000 {
             let t = f64::from(step);
-            let center = DVec3::new((t * 0.713).sin() * 1e5, (t * 0.317).cos() * 1e3, t);
-            let half = DVec3::new(0.1 + t * 0.05, 3.0 + (t * 0.1).sin(), 1.0 + t);
+            let center = DVec2::new((t * 0.713).sin() * 1e5, (t * 0.317).cos() * 1e3);
+            let half = DVec2::new(0.1 + t * 0.05, 3.0 + (t * 0.1).sin());
             let request = request(center - half, center + half);
-            let window = OrthoWindow::fit(&request, None);
+            let window = MapWindow::fit(&request, None);
             assert_holds(&window, &request);
             let phase = window.min / window.texel;
             assert!((phase - phase.round()).abs().max_element() < 1e-4);
-            let ideal = half.truncate() * 2.0 / 505.0;
+            let ideal = half * 2.0 / 505.0;
             assert!((window.texel / ideal).max_element() <= 2.0_f64.powf(0.25) * (1.0 + 1e-9));
         }
     }
@@ -153,29 +179,56 @@ mod tests {
     /// A request that drifts less than the spare room changes nothing at all; one that leaves it moves by whole texels.
     #[test]
     fn a_held_window_stays_until_it_must_move() {
-        let first = request(DVec3::new(-4.0, -3.0, -10.0), DVec3::new(4.3, 3.1, 5.0));
-        let held = OrthoWindow::fit(&first, None);
-        let nudge = DVec3::new(held.texel.x * 0.4, -held.texel.y * 0.3, 1e-4);
-        let second = request(first.required.min + nudge, first.required.max + nudge);
-        assert_eq!(OrthoWindow::fit(&second, Some(&held)), held);
-        let far = DVec3::new(7.0, 0.0, 0.0);
-        let third = request(first.required.min + far, first.required.max + far);
-        let moved = OrthoWindow::fit(&third, Some(&held));
+        let first = request(DVec2::new(-4.0, -3.0), DVec2::new(4.3, 3.1));
+        let held = MapWindow::fit(&first, None);
+        let nudge = DVec2::new(held.texel.x * 0.4, -held.texel.y * 0.3);
+        let second = request(first.min + nudge, first.max + nudge);
+        assert_eq!(MapWindow::fit(&second, Some(&held)), held);
+        let far = DVec2::new(7.0, 0.0);
+        let third = request(first.min + far, first.max + far);
+        let moved = MapWindow::fit(&third, Some(&held));
         assert_holds(&moved, &third);
         assert_eq!(moved.texel, held.texel);
         let texels = (moved.min - held.min) / held.texel;
         assert!((texels - texels.round()).abs().max_element() < 1e-9);
     }
 
+    /// A window that would be as large as all there can be is all there can be.
     #[test]
-    fn maps_smaller_than_their_margins_and_flat_boxes_stay_finite() {
-        for map_size in [1, 2, 3, 7] {
-            let point = DVec3::splat(2.5);
-            let mut request = request(point, point);
-            request.map_size = map_size;
-            let window = OrthoWindow::fit(&request, None);
-            assert!(window.texel.min_element() > 0.0 && window.depth_range() > 0.0);
-            assert!(window.min.is_finite() && window.near.is_finite());
+    fn a_large_window_is_the_whole() {
+        let mut request = request(DVec2::new(-0.9, -0.1), DVec2::new(0.95, 0.1));
+        request.margin_texels = 3;
+        request.whole = 1.02;
+        let window = MapWindow::fit(&request, None);
+        assert!(window.min.x == -1.02 && (window.max().x - 1.02).abs() <= 4.0 * f64::EPSILON);
+        assert!(window.texel.y < window.texel.x * 0.25);
+        assert_holds(&window, &request);
+    }
+
+    #[test]
+    fn depth_ranges_hold_their_ends_and_rarely_move() {
+        let mut held: Option<DepthRange> = None;
+        let mut changes = 0;
+        for step in 0..1000 {
+            let sway = 0.05 * (f64::from(step) * 0.3).sin();
+            let (far, near) = (-10.0 + sway, 5.0 - sway);
+            let range = DepthRange::fit(far, near, 1e-6, held.as_ref());
+            assert!(range.far < far && near <= range.near);
+            changes += usize::from(held != Some(range));
+            held = Some(range);
         }
+        assert!(changes <= 2, "{changes}");
+    }
+
+    #[test]
+    fn maps_smaller_than_their_margins_and_points_stay_finite() {
+        for map_size in [1, 2, 3, 7] {
+            let mut request = request(DVec2::splat(2.5), DVec2::splat(2.5));
+            request.map_size = map_size;
+            let window = MapWindow::fit(&request, None);
+            assert!(window.texel.min_element() > 0.0 && window.min.is_finite());
+        }
+        let range = DepthRange::fit(3.0, 3.0, 1e-6, None);
+        assert!(range.far < 3.0 && range.near >= 3.0 && range.length() > 0.0);
     }
 }

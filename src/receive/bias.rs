@@ -96,12 +96,12 @@ impl Bias {
     /// light: the size of the gap that the bias can leave.
     pub(crate) fn worst_gap_world(self, filter: Filter, view: &ShadowView) -> f32 {
         let texel = f64::from(view.texel_size_world().max_element());
-        let depth = view.depth_error_ndc().0 * f64::from(view.depth_range_world());
+        let rounding = view.depth_error_world() + view.position_error_world();
         let offset = self.offset_texels(filter) + lateral_error_texels(view);
         let gap = match self {
             Self::Manual { constant, slope } => f64::from(constant.max(slope)),
             // |nx| + |ny| is at most the square root of two.
-            Self::Auto | Self::NormalOffset => offset * texel * std::f64::consts::SQRT_2 + depth,
+            Self::Auto | Self::NormalOffset => offset * texel * std::f64::consts::SQRT_2 + rounding,
         };
         gap as f32
     }

@@ -21,6 +21,16 @@ pub(crate) struct Receiver<'a> {
     pub views: &'a wgpu::Buffer,
     pub view_count: u32,
     pub sampling: Sampling,
+    pub selection: Selection,
+}
+
+/// How a place chooses among a light's views; everything after the choice is the same for all lights.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Selection {
+    /// The first view that holds the whole kernel: cascades, near to far, or the one view of a spot.
+    FirstInside,
+    /// The face of a cube, by the major axis from the light.
+    CubeFace,
 }
 
 /// What a [`ShadowBindings`] is made of.
@@ -308,6 +318,9 @@ fn emit(
         let sampling = source.receiver.sampling;
         modules.push(sampling.filter.wgsl().0);
         modules.push(sampling.bias.scheme(sampling.filter).module());
+        if source.receiver.selection == Selection::CubeFace {
+            modules.push("cube_face");
+        }
     }
     let mut text = shader::compose(&modules)?;
     let mut line = |arguments: std::fmt::Arguments<'_>| {
@@ -339,7 +352,12 @@ fn emit(
 @group(SHADOW_GROUP) @binding({views}) var<uniform> shadow_views_{name}: array<ShadowView, {count}>;
 @group(SHADOW_GROUP) @binding({map}) var shadow_map_{name}: texture_depth_2d_array;
 
-// Visibility of the light in [0, 1], by the first view that holds the whole kernel; 1 where none does.
+",
+            map = views + 1,
+        ));
+        match source.receiver.selection {
+            Selection::FirstInside => line(format_args!(
+                "// Visibility in [0, 1] by the first view that holds the whole kernel; 1 where none does.
 fn shadow_{name}(position: vec3<f32>, normal: vec3<f32>) -> f32 {{
     for (var i = 0u; i < {count}u; i++) {{
         let receiver = {make_receiver}(shadow_views_{name}[i], position, normal);
@@ -349,9 +367,21 @@ fn shadow_{name}(position: vec3<f32>, normal: vec3<f32>) -> f32 {{
     }}
     return 1.0;
 }}
-",
-            map = views + 1,
-        ));
+"
+            )),
+            Selection::CubeFace => line(format_args!(
+                "// Visibility in [0, 1] by the face on which the place lies as seen from the light.
+fn shadow_{name}(position: vec3<f32>, normal: vec3<f32>) -> f32 {{
+    let face = shadow_cube_face(position - shadow_views_{name}[0].anchor);
+    let receiver = {make_receiver}(shadow_views_{name}[face], position, normal);
+    if !receiver.inside {{
+        return 1.0;
+    }}
+    return shadow_{filter}(shadow_map_{name}, {arguments}receiver);
+}}
+"
+            )),
+        }
     }
     Ok(text)
 }

@@ -77,11 +77,6 @@ impl Filter {
         }
     }
 
-    /// Texels kept free on every side of a fitted map so that no kernel leaves it.
-    pub(crate) fn margin_texels(self) -> u32 {
-        self.reach_texels().ceil() as u32 + 1
-    }
-
     /// Edge sharpness; 1 for the filters that have none.
     pub const fn sharpness(self) -> f32 {
         match self {

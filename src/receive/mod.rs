@@ -15,8 +15,8 @@ pub mod reference;
 mod uniforms;
 
 pub use bias::Bias;
-pub(crate) use bindings::Receiver;
+pub(crate) use bindings::{Receiver, Selection};
 pub use bindings::{ShadowBindings, ShadowBindingsDescriptor, ShadowSource};
 pub use filter::Filter;
 pub use uniforms::ShadowViewUniform;
-pub(crate) use uniforms::{Sampling, view_uniform};
+pub(crate) use uniforms::{Sampling, empty_view_uniform, view_uniform};

@@ -55,7 +55,8 @@ pub fn receiver(
     match bias.scheme(filter) {
         BiasScheme::Plane => {
             let offset =
-                f64::from(view.offset_texels) * clip_w(view, relative).max(0.0) * steepness;
+                f64::from(view.offset_texels) * clip_w(view, relative).max(0.0) * steepness
+                    + f64::from(view.offset_world);
             let lifted = relative + normal * offset;
             let plane = plane_across_map(view, lifted, normal);
             if plane.z.abs() > 0.0 {
@@ -72,12 +73,18 @@ pub fn receiver(
             let growth = texels * steepness * w_row(view).truncate().dot(normal).max(0.0);
             let offset =
                 texels * clip_w(view, relative).max(0.0) * steepness / (1.0 - growth.min(0.9));
-            let moved = relative + normal * if offset > 0.0 { offset } else { 0.0 };
+            let distance = offset + f64::from(view.offset_world);
+            let moved = relative + normal * if distance > 0.0 { distance } else { 0.0 };
             receiver_at(view, moved, DVec2::ZERO, depth_error)
         }
         BiasScheme::Manual => {
             let light = Vec4::from_array(view.light).as_dvec4();
-            let toward_light = (light.truncate() - relative * light.w).normalize();
+            let toward_light = if light.w > 0.0 {
+                -relative
+            } else {
+                light.truncate()
+            }
+            .normalize();
             let slope = f64::from(view.manual_slope) * (1.0 - normal.dot(toward_light));
             let distance = slope.max(f64::from(view.manual_constant));
             receiver_at(view, relative + toward_light * distance, DVec2::ZERO, 0.0)
@@ -190,10 +197,13 @@ fn receiver_at(
     let inner = Vec4::from_array(view.inner).as_dvec4();
     let within = texel.cmpge(DVec2::new(inner.x, inner.y)).all()
         && texel.cmple(DVec2::new(inner.z, inner.w)).all();
+    let light = Vec4::from_array(view.light).as_dvec4();
+    let reached = relative.length() <= f64::from(view.range)
+        && -relative.dot(light.truncate()) >= f64::from(view.cone_cosine) * relative.length();
     Receiver {
         texel,
         depth: depth + offset + depth * f64::from(view.depth_error_relative),
         gradient,
-        inside: within && place.w > 0.0 && depth >= 0.0,
+        inside: within && reached && place.w > 0.0 && depth >= 0.0,
     }
 }

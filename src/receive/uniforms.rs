@@ -1,6 +1,7 @@
 //! The layout that Rust and WGSL share.
 
 use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
 
 use crate::fit::ShadowView;
 use crate::receive::bias::lateral_error_texels;
@@ -18,7 +19,7 @@ pub struct ShadowViewUniform {
     pub plane_down: [f32; 4],
     /// The same along depth.
     pub plane_depth: [f32; 4],
-    /// Toward the light, homogeneous, relative to the anchor.
+    /// Toward the light along the view's axis; w is 1 for a local light, whose place is the anchor, and 0 for a directional one.
     pub light: [f32; 4],
     /// A point of render space inside the view.
     pub anchor: [f32; 3],
@@ -36,13 +37,24 @@ pub struct ShadowViewUniform {
     pub lateral_error: f32,
     /// Offset along the normal in texels times |nx| + |ny|.
     pub offset_texels: f32,
+    /// Offset along the normal in world units.
+    pub offset_world: f32,
     /// Manual bias: constant, world units.
     pub manual_constant: f32,
     /// Manual bias: slope, world units.
     pub manual_slope: f32,
     /// Edge sharpness.
     pub sharpness: f32,
+    /// World distance from the anchor beyond which a local light does not reach; huge for a directional one.
+    pub range: f32,
+    /// Cosine of the half-angle of a cone around the view's axis; -2 for none.
+    pub cone_cosine: f32,
+    /// WGSL rounds the struct up to 16 bytes.
+    pub padding: f32,
 }
+
+/// A range that no distance exceeds, and whose square is finite.
+const ENDLESS: f32 = 1e18;
 
 /// How the maps of a light are looked up.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,25 +63,33 @@ pub(crate) struct Sampling {
     pub bias: Bias,
 }
 
+impl Sampling {
+    /// Texels by which a lookup may leave the place of its receiver: the filter's reach, the way that an offset along the
+    /// normal can lead across the map, and 1/64 for rounding (6uN is 1/350 of a texel at N = 8192).
+    pub fn border_texels(&self) -> f64 {
+        let sideways = self.bias.offset_texels(self.filter) * std::f64::consts::SQRT_2;
+        self.filter.reach_texels() + sideways + 1.0 / 64.0
+    }
+
+    /// Whole texels kept free on every side of a fitted map so that no kernel leaves it.
+    pub fn margin_texels(&self) -> u32 {
+        self.border_texels().ceil() as u32
+    }
+}
+
 /// A view that nothing casts into: no receiver is inside it.
-pub(crate) fn empty_view_uniform(layer: u32) -> ShadowViewUniform {
+pub(crate) fn empty_view_uniform(layer: u32, anchor_render: Vec3) -> ShadowViewUniform {
     ShadowViewUniform {
         inner: [1.0, 1.0, 0.0, 0.0],
         layer,
+        anchor: anchor_render.to_array(),
         map_size: 1.0,
         ..ShadowViewUniform::zeroed()
     }
 }
 
-/// The uniform of `view`, or of an empty one.
-pub(crate) fn view_uniform(
-    view: Option<&ShadowView>,
-    layer: u32,
-    sampling: &Sampling,
-) -> ShadowViewUniform {
-    let Some(view) = view else {
-        return empty_view_uniform(layer);
-    };
+/// The uniform of `view`.
+pub(crate) fn view_uniform(view: &ShadowView, sampling: &Sampling) -> ShadowViewUniform {
     let texel_from_anchor = view.texel_from_anchor();
     // A plane is a row vector and goes through the inverse: plane_texel = plane_render * inverse(texel_from_anchor). Its
     // component along texel x is a product with the inverse's first column.
@@ -85,17 +105,21 @@ pub(crate) fn view_uniform(
         plane_across: anchor_from_texel.col(0).as_vec4().to_array(),
         plane_down: anchor_from_texel.col(1).as_vec4().to_array(),
         plane_depth: anchor_from_texel.col(2).as_vec4().to_array(),
-        light: view.light_from_anchor().as_vec4().to_array(),
+        light: view.light_axis().as_vec4().to_array(),
         anchor: view.anchor_render().to_array(),
-        layer,
+        layer: view.layer(),
         inner,
         map_size: view.map_size() as f32,
         depth_error: depth_error as f32,
         depth_error_relative: depth_error_relative as f32,
         lateral_error: lateral_error_texels(view) as f32,
         offset_texels: sampling.bias.offset_texels(sampling.filter) as f32,
+        offset_world: view.position_error_world() as f32,
         manual_constant,
         manual_slope,
         sharpness: sampling.filter.sharpness(),
+        range: view.reach_world().min(f64::from(ENDLESS)) as f32,
+        cone_cosine: view.cone_cosine() as f32,
+        padding: 0.0,
     }
 }

@@ -1,0 +1,238 @@
+//! What every light owns: a depth map, the recorder that fills it, the uniforms of its views, and a report.
+
+use crate::cast::{DepthMap, Recorder, ShadowCaster, UploadBuffer, ViewDraws};
+use crate::receive::{Receiver, Sampling, Selection, ShadowSource, ShadowViewUniform};
+use crate::report::{ShadowReport, ViewReport, ViewStatus};
+use crate::{ShadowError, ShadowView};
+
+/// The common part of a light's shadows.
+#[derive(Debug)]
+pub(crate) struct LightMaps {
+    map: DepthMap,
+    recorder: Recorder,
+    uniforms: UploadBuffer,
+    sampling: Sampling,
+    selection: Selection,
+    views: Vec<ViewDraws>,
+    uniform_values: Vec<ShadowViewUniform>,
+    report: ShadowReport,
+    /// Views of the frame before last, for their lists' memory.
+    spare: Vec<ViewDraws>,
+}
+
+/// What a light's maps are made of.
+pub(crate) struct LightMapsDescriptor<'a> {
+    pub label: &'a str,
+    /// Path of the size in the caller's descriptor.
+    pub size_field: &'static str,
+    pub map_size: u32,
+    pub layers: u32,
+    pub sampling: Sampling,
+    pub selection: Selection,
+    /// What the uniforms hold until the first frame.
+    pub empty: ShadowViewUniform,
+}
+
+impl LightMaps {
+    pub fn new(
+        device: &wgpu::Device,
+        descriptor: &LightMapsDescriptor<'_>,
+    ) -> Result<Self, ShadowError> {
+        let (label, layers) = (descriptor.label, descriptor.layers);
+        let map = DepthMap::new(
+            device,
+            label,
+            descriptor.size_field,
+            descriptor.map_size,
+            layers,
+        )?;
+        let report = ShadowReport {
+            views: Vec::new(),
+            bytes_held: map.bytes(),
+        };
+        Ok(Self {
+            map,
+            recorder: Recorder::new(device, label, layers)?,
+            uniforms: UploadBuffer::new(
+                device,
+                &format!("{label} views"),
+                u64::from(layers) * size_of::<ShadowViewUniform>() as u64,
+            )?,
+            sampling: descriptor.sampling,
+            selection: descriptor.selection,
+            views: Vec::new(),
+            uniform_values: vec![descriptor.empty; layers as usize],
+            report,
+            spare: Vec::new(),
+        })
+    }
+
+    pub fn sampling(&self) -> &Sampling {
+        &self.sampling
+    }
+
+    pub fn texture(&self) -> &wgpu::Texture {
+        self.map.texture()
+    }
+
+    pub fn texture_view(&self) -> &wgpu::TextureView {
+        self.map.array_view()
+    }
+
+    pub fn layers(&self) -> u32 {
+        self.map.layers()
+    }
+
+    pub fn map_size(&self) -> u32 {
+        self.map.size()
+    }
+
+    pub fn uniform_buffer(&self) -> &wgpu::Buffer {
+        self.uniforms.buffer()
+    }
+
+    pub fn view_uniforms(&self) -> &[ShadowViewUniform] {
+        &self.uniform_values
+    }
+
+    pub fn views(&self) -> impl ExactSizeIterator<Item = &ShadowView> {
+        self.views.iter().map(|draws| &draws.view)
+    }
+
+    pub fn report(&self) -> &ShadowReport {
+        &self.report
+    }
+
+    pub fn source(&self) -> ShadowSource<'_> {
+        ShadowSource {
+            receiver: Receiver {
+                map: self.map.array_view(),
+                views: self.uniforms.buffer(),
+                view_count: self.map.layers(),
+                sampling: self.sampling,
+                selection: self.selection,
+            },
+        }
+    }
+
+    pub fn invalidate(&mut self) {
+        self.recorder.invalidate();
+        self.uniforms.invalidate();
+    }
+
+    /// An empty list of caster indices, with the memory of an earlier frame's.
+    pub fn spare_list(&mut self) -> Vec<u32> {
+        let mut list = self.spare.pop().map(|d| d.casters).unwrap_or_default();
+        list.clear();
+        list
+    }
+
+    /// Uploads and records a frame: `views` are those that something casts into, `empty` stands for the other layers.
+    /// On an error nothing has been recorded and nothing has changed.
+    pub fn record(
+        &mut self,
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+        mut views: Vec<ViewDraws>,
+        empty: impl Fn(u32) -> ShadowViewUniform,
+        casters: &[&dyn ShadowCaster],
+    ) -> Result<&ShadowReport, ShadowError> {
+        let uniform_values: Vec<_> = (0..self.map.layers())
+            .map(|layer| {
+                let draws = views.iter().find(|draws| draws.view.layer() == layer);
+                draws.map_or_else(
+                    || empty(layer),
+                    |draws| crate::receive::view_uniform(&draws.view, &self.sampling),
+                )
+            })
+            .collect();
+        let upload = self
+            .uniforms
+            .prepare(device, bytemuck::cast_slice(&uniform_values))?;
+        let prepared = self.recorder.prepare(device, &views)?;
+        // Nothing fails from here on.
+        self.uniforms.commit(encoder, upload);
+        self.recorder
+            .record(encoder, &self.map, prepared, &mut views, casters);
+        self.uniform_values = uniform_values;
+        self.spare = std::mem::replace(&mut self.views, views);
+        self.fill_report(casters.len() as u32);
+        Ok(&self.report)
+    }
+
+    fn fill_report(&mut self, caster_count: u32) {
+        self.report.views.clear();
+        for layer in 0..self.map.layers() {
+            let draws = self.views.iter().find(|draws| draws.view.layer() == layer);
+            self.report.views.push(match draws {
+                None => ViewReport::empty(layer, caster_count),
+                Some(draws) => ViewReport {
+                    layer,
+                    status: if draws.drawn {
+                        ViewStatus::Drawn
+                    } else {
+                        ViewStatus::Kept
+                    },
+                    casters: draws.casters.len() as u32,
+                    culled: caster_count - draws.casters.len() as u32,
+                    texel_size_world: draws.view.texel_size_world(),
+                    depth_range_world: draws.view.depth_range_world(),
+                    worst_gap_world: self
+                        .sampling
+                        .bias
+                        .worst_gap_world(self.sampling.filter, &draws.view),
+                },
+            });
+        }
+    }
+}
+
+/// The getters that every light has, over its field `maps`.
+macro_rules! light_maps_getters {
+    ($light:ty, $view:literal) => {
+        impl $light {
+            /// Says that the maps no longer hold what was recorded (an encoder was dropped, the texture was written by
+            /// others): the next frame draws every view.
+            pub fn invalidate(&mut self) {
+                self.maps.invalidate();
+            }
+
+            /// What [`ShadowBindings`](crate::ShadowBindings) and [`DebugView`](crate::DebugView) need of this light.
+            pub fn source(&self) -> crate::ShadowSource<'_> {
+                self.maps.source()
+            }
+
+            /// The views of the last frame in the order of layers; those that nothing casts into are left out.
+            pub fn views(&self) -> impl ExactSizeIterator<Item = &crate::ShadowView> {
+                self.maps.views()
+            }
+
+            #[doc = concat!("Uniforms of the last frame, one per ", $view, ": what the uniform buffer holds.")]
+            pub fn view_uniforms(&self) -> &[crate::ShadowViewUniform] {
+                self.maps.view_uniforms()
+            }
+
+            #[doc = concat!("The depth texture: `Depth32Float`, reversed, one layer per ", $view, ". Usable as a copy source.")]
+            pub fn texture(&self) -> &wgpu::Texture {
+                self.maps.texture()
+            }
+
+            /// All layers as a `texture_depth_2d_array`.
+            pub fn texture_view(&self) -> &wgpu::TextureView {
+                self.maps.texture_view()
+            }
+
+            #[doc = concat!("Uniform buffer with one [`ShadowViewUniform`](crate::ShadowViewUniform) per ", $view, ".")]
+            pub fn uniform_buffer(&self) -> &wgpu::Buffer {
+                self.maps.uniform_buffer()
+            }
+
+            /// What the last frame did.
+            pub fn report(&self) -> &crate::ShadowReport {
+                self.maps.report()
+            }
+        }
+    };
+}
+
+pub(crate) use light_maps_getters;

@@ -1,0 +1,164 @@
+//! `OmniShadow`: a light that shines in every direction.
+
+use glam::{DVec3, Vec3};
+
+use crate::cast::ShadowCaster;
+use crate::check;
+use crate::fit::LightAxes;
+use crate::light_maps::{LightMaps, LightMapsDescriptor, light_maps_getters};
+use crate::local_light::{LocalFields, LocalFrame, LocalViews};
+use crate::receive::{Sampling, Selection, empty_view_uniform};
+use crate::{Aabb, Bias, CameraView, Filter, ShadowError, ShadowReport};
+
+/// What an [`OmniShadow`] is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OmniShadowDescriptor<'a> {
+    /// Label from which all objects derive theirs. Default "omni shadow".
+    pub label: wgpu::Label<'a>,
+    /// Texels per side of each of the six faces, 1 up to the device's `max_texture_dimension_2d`. Default 1024.
+    pub map_size: u32,
+    /// How a map is looked up.
+    pub filter: Filter,
+    /// How receivers are kept from shadowing themselves.
+    pub bias: Bias,
+}
+
+impl Default for OmniShadowDescriptor<'_> {
+    fn default() -> Self {
+        Self {
+            label: None,
+            map_size: 1024,
+            filter: Filter::default(),
+            bias: Bias::Auto,
+        }
+    }
+}
+
+/// A light at a place that shines in every direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OmniLight {
+    /// Absolute world position (f64). It may lie anywhere, on a surface or on a vertex included; what is nearer to it than
+    /// 1/1024 of its reach casts nothing.
+    pub position_world: DVec3,
+    /// Distance in world units beyond which the light neither draws casters nor shadows receivers (visibility is 1 there, and
+    /// the engine's attenuation should be 0); above 0, infinity allowed.
+    pub range: f32,
+}
+
+/// What a point light needs to know of a frame.
+#[derive(Clone, Copy)]
+pub struct OmniFrame<'a> {
+    /// World position of render space's origin, f64. Zero unless the engine renders relative to its camera.
+    pub origin: DVec3,
+    /// The light.
+    pub light: OmniLight,
+    /// The camera whose picture the shadows are for: what it does not see needs no map. None for all of space.
+    pub camera: Option<CameraView>,
+    /// Everything that may cast; all of it receives, too.
+    pub casters: &'a [&'a dyn ShadowCaster],
+    /// Bounds in render space of surfaces that only receive.
+    pub receivers: &'a [Aabb],
+}
+
+/// Shadows of a point light: six perspective faces as layers of one depth texture.
+#[derive(Debug)]
+pub struct OmniShadow {
+    maps: LightMaps,
+    views: LocalViews,
+}
+
+const FIELDS: LocalFields = LocalFields {
+    origin: "OmniFrame::origin",
+    position: "OmniFrame::light.position_world",
+    range: "OmniFrame::light.range",
+    camera: [
+        "OmniFrame::camera.view_from_render",
+        "OmniFrame::camera.clip_from_view",
+        "OmniFrame::camera.max_distance",
+    ],
+    casters: "OmniFrame::casters",
+    receivers: "OmniFrame::receivers",
+};
+
+impl OmniShadow {
+    /// Makes texture and buffers. Until the first [`OmniShadow::record`], everything is lit.
+    ///
+    /// # Errors
+    /// [`ShadowError`] for a descriptor out of range, or a device that cannot hold it.
+    pub fn new(
+        device: &wgpu::Device,
+        descriptor: &OmniShadowDescriptor<'_>,
+    ) -> Result<Self, ShadowError> {
+        check::filter("OmniShadowDescriptor::filter", descriptor.filter)?;
+        check::bias("OmniShadowDescriptor::bias", descriptor.bias)?;
+        let maps = LightMaps::new(
+            device,
+            &LightMapsDescriptor {
+                label: descriptor.label.unwrap_or("omni shadow"),
+                size_field: "OmniShadowDescriptor::map_size",
+                map_size: descriptor.map_size,
+                layers: 6,
+                sampling: Sampling {
+                    filter: descriptor.filter,
+                    bias: descriptor.bias,
+                },
+                selection: Selection::CubeFace,
+                empty: empty_view_uniform(0, Vec3::ZERO),
+            },
+        )?;
+        Ok(Self {
+            maps,
+            views: LocalViews::default(),
+        })
+    }
+
+    /// Fits the faces to the frame, culls, writes the uniforms and records the depth passes that are needed: a face into which
+    /// nothing casts, or on which no visible receiver lies, is neither drawn nor cleared.
+    ///
+    /// The encoder must be submitted before anything that asks for these shadows. One that is thrown away takes its depth
+    /// passes with it: then call [`OmniShadow::invalidate`].
+    ///
+    /// # Errors
+    /// [`ShadowError`] for input that is not finite, or a range that is not above 0. Nothing is recorded then, and the last
+    /// good maps remain.
+    pub fn record(
+        &mut self,
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+        frame: &OmniFrame<'_>,
+    ) -> Result<&ShadowReport, ShadowError> {
+        self.views.record(
+            &mut self.maps,
+            device,
+            encoder,
+            &LocalFrame {
+                origin: frame.origin,
+                position_world: frame.light.position_world,
+                range: frame.light.range,
+                views: &cube_faces(),
+                tangent: 1.0,
+                cone_cosine: -2.0,
+                camera: frame.camera.as_ref(),
+                casters: frame.casters,
+                receivers: frame.receivers,
+                fields: &FIELDS,
+            },
+        )
+    }
+}
+
+light_maps_getters!(OmniShadow, "face (+x, -x, +y, -y, +z, -z)");
+
+/// Axes of the faces +x, -x, +y, -y, +z, -z. Their up vectors are those of a cross unfolded around -z: the four sides stand
+/// upright, and top and bottom join the side that looks along -z.
+fn cube_faces() -> [LightAxes; 6] {
+    [
+        (DVec3::X, DVec3::Y),
+        (DVec3::NEG_X, DVec3::Y),
+        (DVec3::Y, DVec3::Z),
+        (DVec3::NEG_Y, DVec3::NEG_Z),
+        (DVec3::Z, DVec3::Y),
+        (DVec3::NEG_Z, DVec3::Y),
+    ]
+    .map(|(forward, up)| LightAxes::looking(forward, up))
+}

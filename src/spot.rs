@@ -1,0 +1,169 @@
+//! `SpotShadow`: a light that shines into a cone.
+
+use glam::{DVec3, Vec3};
+
+use crate::cast::ShadowCaster;
+use crate::check;
+use crate::fit::LightAxes;
+use crate::light_maps::{LightMaps, LightMapsDescriptor, light_maps_getters};
+use crate::local_light::{LocalFields, LocalFrame, LocalViews};
+use crate::receive::{Sampling, Selection, empty_view_uniform};
+use crate::{Aabb, Bias, CameraView, Filter, ShadowError, ShadowReport};
+
+/// What a [`SpotShadow`] is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpotShadowDescriptor<'a> {
+    /// Label from which all objects derive theirs. Default "spot shadow".
+    pub label: wgpu::Label<'a>,
+    /// Texels per side of the map, 1 up to the device's `max_texture_dimension_2d`. Default 1024.
+    pub map_size: u32,
+    /// How a map is looked up.
+    pub filter: Filter,
+    /// How receivers are kept from shadowing themselves.
+    pub bias: Bias,
+}
+
+impl Default for SpotShadowDescriptor<'_> {
+    fn default() -> Self {
+        Self {
+            label: None,
+            map_size: 1024,
+            filter: Filter::default(),
+            bias: Bias::Auto,
+        }
+    }
+}
+
+/// A light at a place that shines into a cone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpotLight {
+    /// Absolute world position (f64); what is nearer to it than 1/1024 of its reach casts nothing.
+    pub position_world: DVec3,
+    /// Direction in which it shines, any length but zero; world axes.
+    pub direction: Vec3,
+    /// Angle in radians from the axis to the rim of the cone (half of what it spans); above 0, below π/2. Outside the cone
+    /// visibility is 1: attenuation belongs to the engine. A map is flat, so its texels grow toward the rim; from
+    /// [`SpotLight::WIDEST_SENSIBLE_OUTER_ANGLE`] on, a point light of the same memory is finer in the middle.
+    pub outer_angle_radians: f32,
+    /// Distance in world units beyond which the light neither draws casters nor shadows receivers; above 0, infinity allowed.
+    pub range: f32,
+}
+
+impl SpotLight {
+    /// Half-angle at which one map of 6 N² texels is as fine in its middle as a cube's faces of N² texels: atan √6 = 67.8°.
+    /// An [`OmniShadow`](crate::OmniShadow) serves wider cones better.
+    pub const WIDEST_SENSIBLE_OUTER_ANGLE: f32 = 1.183_199_6;
+}
+
+/// What a spot light needs to know of a frame.
+#[derive(Clone, Copy)]
+pub struct SpotFrame<'a> {
+    /// World position of render space's origin, f64. Zero unless the engine renders relative to its camera.
+    pub origin: DVec3,
+    /// The light.
+    pub light: SpotLight,
+    /// The camera whose picture the shadows are for: what it does not see needs no map. None for all of the cone.
+    pub camera: Option<CameraView>,
+    /// Everything that may cast; all of it receives, too.
+    pub casters: &'a [&'a dyn ShadowCaster],
+    /// Bounds in render space of surfaces that only receive.
+    pub receivers: &'a [Aabb],
+}
+
+/// Shadows of a spot light: one perspective view in a depth texture of one layer.
+#[derive(Debug)]
+pub struct SpotShadow {
+    maps: LightMaps,
+    views: LocalViews,
+}
+
+const FIELDS: LocalFields = LocalFields {
+    origin: "SpotFrame::origin",
+    position: "SpotFrame::light.position_world",
+    range: "SpotFrame::light.range",
+    camera: [
+        "SpotFrame::camera.view_from_render",
+        "SpotFrame::camera.clip_from_view",
+        "SpotFrame::camera.max_distance",
+    ],
+    casters: "SpotFrame::casters",
+    receivers: "SpotFrame::receivers",
+};
+
+impl SpotShadow {
+    /// Makes texture and buffers. Until the first [`SpotShadow::record`], everything is lit.
+    ///
+    /// # Errors
+    /// [`ShadowError`] for a descriptor out of range, or a device that cannot hold it.
+    pub fn new(
+        device: &wgpu::Device,
+        descriptor: &SpotShadowDescriptor<'_>,
+    ) -> Result<Self, ShadowError> {
+        check::filter("SpotShadowDescriptor::filter", descriptor.filter)?;
+        check::bias("SpotShadowDescriptor::bias", descriptor.bias)?;
+        let maps = LightMaps::new(
+            device,
+            &LightMapsDescriptor {
+                label: descriptor.label.unwrap_or("spot shadow"),
+                size_field: "SpotShadowDescriptor::map_size",
+                map_size: descriptor.map_size,
+                layers: 1,
+                sampling: Sampling {
+                    filter: descriptor.filter,
+                    bias: descriptor.bias,
+                },
+                selection: Selection::FirstInside,
+                empty: empty_view_uniform(0, Vec3::ZERO),
+            },
+        )?;
+        Ok(Self {
+            maps,
+            views: LocalViews::default(),
+        })
+    }
+
+    /// Fits the view to the frame, culls, writes the uniforms and records the depth pass if it is needed.
+    ///
+    /// The encoder must be submitted before anything that asks for these shadows. One that is thrown away takes its depth pass
+    /// with it: then call [`SpotShadow::invalidate`].
+    ///
+    /// # Errors
+    /// [`ShadowError`] for input that is not finite, or an angle or range out of its limits. Nothing is recorded then, and the
+    /// last good map remains.
+    pub fn record(
+        &mut self,
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+        frame: &SpotFrame<'_>,
+    ) -> Result<&ShadowReport, ShadowError> {
+        let direction = frame.light.direction.as_dvec3();
+        check::direction("SpotFrame::light.direction", direction)?;
+        let outer_angle = frame.light.outer_angle_radians;
+        check::in_range(
+            "SpotFrame::light.outer_angle_radians",
+            "above 0 and below π/2",
+            outer_angle > 0.0 && outer_angle < std::f32::consts::FRAC_PI_2,
+            outer_angle,
+        )?;
+        let outer_angle = f64::from(outer_angle);
+        self.views.record(
+            &mut self.maps,
+            device,
+            encoder,
+            &LocalFrame {
+                origin: frame.origin,
+                position_world: frame.light.position_world,
+                range: frame.light.range,
+                views: &[LightAxes::new(direction, DVec3::Y)],
+                tangent: outer_angle.tan(),
+                cone_cosine: outer_angle.cos(),
+                camera: frame.camera.as_ref(),
+                casters: frame.casters,
+                receivers: frame.receivers,
+                fields: &FIELDS,
+            },
+        )
+    }
+}
+
+light_maps_getters!(SpotShadow, "light");
