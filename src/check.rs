@@ -71,7 +71,27 @@ pub(crate) fn receiver_bounds(field: &'static str, list: &[Aabb]) -> Result<(), 
         .try_for_each(|(index, item)| bounds(field, index, item))
 }
 
+/// A filter that a light with a single map plane at a time can use.
+pub(crate) fn planar_filter(field: &'static str, planar: Filter) -> Result<(), ShadowError> {
+    in_range(
+        field,
+        "a filter for all kinds of light (direction-space filters are for point lights)",
+        planar.directions().is_none(),
+        format_args!("{planar:?}"),
+    )?;
+    filter(field, planar)
+}
+
 pub(crate) fn filter(field: &'static str, filter: Filter) -> Result<(), ShadowError> {
+    if filter.directions().is_some() {
+        let radius = filter.radius_world();
+        return in_range(
+            field,
+            "of a finite radius above 0",
+            radius > 0.0 && radius.is_finite(),
+            radius,
+        );
+    }
     let sharpness = filter.sharpness();
     in_range(
         field,

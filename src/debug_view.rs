@@ -4,22 +4,40 @@ use bytemuck::{Pod, Zeroable};
 use wgpu::util::DeviceExt;
 
 use crate::error::DebugViewError;
-use crate::receive::ShadowSource;
+use crate::receive::{Selection, ShadowSource, ShadowViewUniform};
 use crate::shader;
 
-/// Mirror of `ShadowDebugView` in `wgsl/pass/debug_view.wgsl`.
+/// Mirror of `ShadowDebugView` in `wgsl/pass/debug_view.wgsl`, rounded up to 16 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 struct DebugUniform {
-    layer: u32,
-    map_size: f32,
+    index: u32,
+    local: u32,
+    padding: [u32; 2],
 }
 
-/// Draws any layer of a map as grey levels: dark near the light, white at the far plane and where nothing casts.
+/// `SHADOW_DEBUG_VIEWS` of the shader.
+const MOST_VIEWS: usize = 8;
+
+/// What of a light to draw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum DebugPicture {
+    /// One layer of the map, as it lies in the texture.
+    Layer(u32),
+    /// The six faces of a point light as an unfolded cross, four cells wide and three high: -x, -z, +x, +z in the middle row,
+    /// +y above and -y below -z.
+    Cross,
+}
+
+/// Draws depth maps as grey levels: black at the light, white at the far plane or the end of the light's reach and where nothing
+/// casts. Depths of local lights are shown as linear distance.
 #[derive(Debug)]
 pub struct DebugView {
-    pipeline: wgpu::RenderPipeline,
+    layer: wgpu::RenderPipeline,
+    cross: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
+    sampler: wgpu::Sampler,
 }
 
 impl DebugView {
@@ -39,107 +57,163 @@ impl DebugView {
         if !(floats && renderable) {
             return Err(DebugViewError::Format { format });
         }
-        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("shadow debug view"),
-            entries: &[
-                wgpu::BindGroupLayoutEntry {
-                    binding: 0,
-                    visibility: wgpu::ShaderStages::FRAGMENT,
-                    ty: wgpu::BindingType::Buffer {
-                        ty: wgpu::BufferBindingType::Uniform,
-                        has_dynamic_offset: false,
-                        min_binding_size: wgpu::BufferSize::new(size_of::<DebugUniform>() as u64),
-                    },
-                    count: None,
-                },
-                wgpu::BindGroupLayoutEntry {
-                    binding: 1,
-                    visibility: wgpu::ShaderStages::FRAGMENT,
-                    ty: wgpu::BindingType::Texture {
-                        sample_type: wgpu::TextureSampleType::Depth,
-                        view_dimension: wgpu::TextureViewDimension::D2Array,
-                        multisampled: false,
-                    },
-                    count: None,
-                },
-            ],
-        });
+        let layout = create_layout(device);
+        let source = shader::compose(&[shader::DEBUG_VIEW.name]).unwrap_or_default();
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("shadow debug view"),
-            source: wgpu::ShaderSource::Wgsl(shader::DEBUG_VIEW.source.into()),
+            source: wgpu::ShaderSource::Wgsl(source.into()),
         });
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("shadow debug view"),
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("shadow debug view"),
-            layout: Some(&pipeline_layout),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("shadow_debug_vertex"),
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: None,
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("shadow_debug_fragment"),
-                compilation_options: Default::default(),
-                targets: &[Some(format.into())],
+        let create = |entry| create_pipeline(device, &layout, &module, entry, format);
+        Ok(Self {
+            layer: create("shadow_debug_layer"),
+            cross: create("shadow_debug_cross"),
+            layout,
+            sampler: device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("shadow debug view"),
+                ..Default::default()
             }),
-            multiview_mask: None,
-            cache: None,
-        });
-        Ok(Self { pipeline, layout })
+        })
     }
 
-    /// Draws layer `layer` of `source` over the whole viewport of `pass`, which the engine may set to a corner of its window.
-    /// Sets pipeline and bind group 0.
+    /// Draws `picture` of `source` over the whole viewport of `pass`, which the engine may set to a corner of its window. Sets
+    /// pipeline and bind group 0.
     ///
     /// # Errors
-    /// [`DebugViewError::Layer`] for a layer that the map does not have; nothing is drawn then.
+    /// [`DebugViewError`] for a layer that the map does not have, or a cross of a light without a cube; nothing is drawn then.
     pub fn draw(
         &self,
         device: &wgpu::Device,
         pass: &mut wgpu::RenderPass<'_>,
         source: ShadowSource<'_>,
-        layer: u32,
+        picture: DebugPicture,
     ) -> Result<(), DebugViewError> {
         let receiver = source.receiver;
         let layers = receiver.view_count;
-        if layer >= layers {
-            return Err(DebugViewError::Layer { layer, layers });
-        }
-        let uniform = DebugUniform {
-            layer,
-            map_size: receiver.map.texture().width() as f32,
+        let (pipeline, index) = match picture {
+            DebugPicture::Layer(layer) if layer >= layers => {
+                return Err(DebugViewError::Layer { layer, layers });
+            }
+            DebugPicture::Cross if receiver.selection != Selection::CubeFace => {
+                return Err(DebugViewError::NotACube { layers });
+            }
+            DebugPicture::Layer(layer) => (&self.layer, layer),
+            DebugPicture::Cross => (&self.cross, 0),
         };
-        let buffer = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("shadow debug view"),
-            contents: bytemuck::bytes_of(&uniform),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
+        let mut views = [ShadowViewUniform::zeroed(); MOST_VIEWS];
+        for (view, uniform) in views.iter_mut().zip(receiver.uniforms) {
+            *view = *uniform;
+        }
+        let local = receiver.uniforms.iter().any(|view| view.light[3] > 0.0);
+        let header = DebugUniform {
+            index,
+            local: u32::from(local),
+            padding: [0; 2],
+        };
+        let upload = |contents: &[u8]| {
+            device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("shadow debug view"),
+                contents,
+                usage: wgpu::BufferUsages::UNIFORM,
+            })
+        };
+        let header = upload(bytemuck::bytes_of(&header));
+        let views = upload(bytemuck::cast_slice(&views));
         let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("shadow debug view"),
             layout: &self.layout,
             entries: &[
                 wgpu::BindGroupEntry {
                     binding: 0,
-                    resource: buffer.as_entire_binding(),
+                    resource: header.as_entire_binding(),
                 },
                 wgpu::BindGroupEntry {
                     binding: 1,
+                    resource: views.as_entire_binding(),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 2,
                     resource: wgpu::BindingResource::TextureView(receiver.map),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 3,
+                    resource: wgpu::BindingResource::Sampler(&self.sampler),
                 },
             ],
         });
-        pass.set_pipeline(&self.pipeline);
+        pass.set_pipeline(pipeline);
         pass.set_bind_group(0, &bind_group, &[]);
         pass.draw(0..3, 0..1);
         Ok(())
     }
+}
+
+fn create_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let uniform = |binding, bytes: usize| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: wgpu::BufferSize::new(bytes as u64),
+        },
+        count: None,
+    };
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("shadow debug view"),
+        entries: &[
+            uniform(0, size_of::<DebugUniform>()),
+            uniform(1, MOST_VIEWS * size_of::<ShadowViewUniform>()),
+            wgpu::BindGroupLayoutEntry {
+                binding: 2,
+                visibility: wgpu::ShaderStages::FRAGMENT,
+                ty: wgpu::BindingType::Texture {
+                    sample_type: wgpu::TextureSampleType::Depth,
+                    view_dimension: wgpu::TextureViewDimension::D2Array,
+                    multisampled: false,
+                },
+                count: None,
+            },
+            wgpu::BindGroupLayoutEntry {
+                binding: 3,
+                visibility: wgpu::ShaderStages::FRAGMENT,
+                ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering),
+                count: None,
+            },
+        ],
+    })
+}
+
+fn create_pipeline(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    module: &wgpu::ShaderModule,
+    entry: &str,
+    format: wgpu::TextureFormat,
+) -> wgpu::RenderPipeline {
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("shadow debug view"),
+        bind_group_layouts: &[Some(layout)],
+        immediate_size: 0,
+    });
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("shadow debug view"),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some("shadow_debug_vertex"),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: None,
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some(entry),
+            compilation_options: Default::default(),
+            targets: &[Some(format.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
 }

@@ -7,8 +7,8 @@ use crate::check;
 use crate::fit::{
     CasterBounds, DirectionalFit, FitInput, FitLimits, LightAxes, MAX_CASCADES, Region,
 };
-use crate::light_maps::{LightMaps, LightMapsDescriptor, light_maps_getters};
-use crate::receive::{Sampling, Selection, empty_view_uniform};
+use crate::light_maps::{LightMaps, LightMapsDescriptor, MapsFrame, light_maps_getters};
+use crate::receive::{Sampling, Selection};
 use crate::report::ShadowReport;
 use crate::{Aabb, Bias, CameraView, CascadeSplit, Filter, ShadowError, ShadowView};
 
@@ -114,7 +114,7 @@ impl DirectionalShadow {
             descriptor.cascades,
         )?;
         check::split("DirectionalShadowDescriptor::split", descriptor.split)?;
-        check::filter("DirectionalShadowDescriptor::filter", descriptor.filter)?;
+        check::planar_filter("DirectionalShadowDescriptor::filter", descriptor.filter)?;
         check::bias("DirectionalShadowDescriptor::bias", descriptor.bias)?;
         let sampling = Sampling {
             filter: descriptor.filter,
@@ -129,7 +129,6 @@ impl DirectionalShadow {
                 layers: descriptor.cascades,
                 sampling,
                 selection: Selection::FirstInside,
-                empty: empty_view_uniform(0, Vec3::ZERO),
             },
         )?;
         Ok(Self {
@@ -166,11 +165,11 @@ impl DirectionalShadow {
                 check::bounds("DirectionalFrame::coverage", 0, &bounds)?;
                 Region::Bounds(bounds)
             }
-            Coverage::Camera(camera) => Region::Camera(camera.frustum(
+            Coverage::Camera(camera) => Region::Camera(Box::new(camera.frustum(
                 "DirectionalFrame::coverage.view_from_render",
                 "DirectionalFrame::coverage.clip_from_view",
                 "DirectionalFrame::coverage.max_distance",
-            )?),
+            )?)),
         };
         check::caster_bounds("DirectionalFrame::casters", frame.casters, &mut self.bounds)?;
         check::receiver_bounds("DirectionalFrame::receivers", frame.receivers)?;
@@ -183,10 +182,14 @@ impl DirectionalShadow {
         };
         let fit = self.fit.fit(&input, &self.limits, &mut self.casters);
         let views = self.cull(&fit, &axes, frame.origin)?;
-        let empty = |layer| empty_view_uniform(layer, Vec3::ZERO);
-        let report = self
-            .maps
-            .record(device, encoder, views, empty, frame.casters)?;
+        let maps_frame = MapsFrame {
+            views,
+            anchor_render: Vec3::ZERO,
+            reach_world: f64::INFINITY,
+            viewer_render: None,
+            casters: frame.casters,
+        };
+        let report = self.maps.record(device, encoder, maps_frame)?;
         self.fit = fit;
         Ok(report)
     }

@@ -220,6 +220,14 @@ pub enum DebugViewError {
         /// The format asked for.
         format: wgpu::TextureFormat,
     },
+    /// An unfolded cross of a light that has no cube.
+    #[error(
+        "DebugView: a cross needs the six faces of a point light, got a light with {layers} layers"
+    )]
+    NotACube {
+        /// Layers of the map.
+        layers: u32,
+    },
     /// A layer that the map does not have.
     #[error("DebugView: layer must be below the map's {layers} layers, got {layer}")]
     Layer {

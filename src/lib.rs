@@ -23,7 +23,7 @@ pub use cast::{
     CasterPipeline, CasterPipelineDescriptor, CasterVertex, DEPTH_FORMAT, MeshCaster,
     MeshCasterDescriptor, MeshIndices, ModelTransform, PositionAttribute, Revision, ShadowCaster,
 };
-pub use debug_view::DebugView;
+pub use debug_view::{DebugPicture, DebugView};
 pub use directional::{
     Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
 };

@@ -1,7 +1,12 @@
 //! What every light owns: a depth map, the recorder that fills it, the uniforms of its views, and a report.
 
+use glam::Vec3;
+
 use crate::cast::{DepthMap, Recorder, ShadowCaster, UploadBuffer, ViewDraws};
-use crate::receive::{Receiver, Sampling, Selection, ShadowSource, ShadowViewUniform};
+use crate::receive::{
+    Receiver, Sampling, Selection, ShadowSource, ShadowViewUniform, empty_view_uniform,
+    endless_range, view_uniform,
+};
 use crate::report::{ShadowReport, ViewReport, ViewStatus};
 use crate::{ShadowError, ShadowView};
 
@@ -29,8 +34,19 @@ pub(crate) struct LightMapsDescriptor<'a> {
     pub layers: u32,
     pub sampling: Sampling,
     pub selection: Selection,
-    /// What the uniforms hold until the first frame.
-    pub empty: ShadowViewUniform,
+}
+
+/// What a frame brings to the maps.
+pub(crate) struct MapsFrame<'a> {
+    /// The views that something casts into; the other layers are lit.
+    pub views: Vec<ViewDraws>,
+    /// The place of a local light, for the layers without a view.
+    pub anchor_render: Vec3,
+    /// World distance beyond which the light does not reach; infinite for a directional one.
+    pub reach_world: f64,
+    /// The camera, if there is one.
+    pub viewer_render: Option<Vec3>,
+    pub casters: &'a [&'a dyn ShadowCaster],
 }
 
 impl LightMaps {
@@ -47,12 +63,17 @@ impl LightMaps {
             layers,
         )?;
         let report = ShadowReport {
-            views: Vec::new(),
             bytes_held: map.bytes(),
+            ..ShadowReport::default()
         };
         Ok(Self {
             map,
-            recorder: Recorder::new(device, label, layers)?,
+            recorder: Recorder::new(
+                device,
+                label,
+                layers,
+                descriptor.selection == Selection::CubeFace,
+            )?,
             uniforms: UploadBuffer::new(
                 device,
                 &format!("{label} views"),
@@ -61,7 +82,7 @@ impl LightMaps {
             sampling: descriptor.sampling,
             selection: descriptor.selection,
             views: Vec::new(),
-            uniform_values: vec![descriptor.empty; layers as usize],
+            uniform_values: vec![empty_view_uniform(0, Vec3::ZERO); layers as usize],
             report,
             spare: Vec::new(),
         })
@@ -77,10 +98,6 @@ impl LightMaps {
 
     pub fn texture_view(&self) -> &wgpu::TextureView {
         self.map.array_view()
-    }
-
-    pub fn layers(&self) -> u32 {
-        self.map.layers()
     }
 
     pub fn map_size(&self) -> u32 {
@@ -109,6 +126,7 @@ impl LightMaps {
                 map: self.map.array_view(),
                 views: self.uniforms.buffer(),
                 view_count: self.map.layers(),
+                uniforms: &self.uniform_values,
                 sampling: self.sampling,
                 selection: self.selection,
             },
@@ -127,23 +145,36 @@ impl LightMaps {
         list
     }
 
-    /// Uploads and records a frame: `views` are those that something casts into, `empty` stands for the other layers.
-    /// On an error nothing has been recorded and nothing has changed.
+    /// Uploads and records a frame. On an error nothing has been recorded and nothing has changed.
     pub fn record(
         &mut self,
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
-        mut views: Vec<ViewDraws>,
-        empty: impl Fn(u32) -> ShadowViewUniform,
-        casters: &[&dyn ShadowCaster],
+        frame: MapsFrame<'_>,
     ) -> Result<&ShadowReport, ShadowError> {
+        let MapsFrame {
+            mut views,
+            anchor_render,
+            reach_world,
+            viewer_render,
+            casters,
+        } = frame;
+        let range = endless_range(reach_world);
+        let sample_radius = self.sampling.filter.radius_world();
+        let viewer = viewer_render.map_or([0.0; 4], |viewer| viewer.extend(1.0).to_array());
         let uniform_values: Vec<_> = (0..self.map.layers())
             .map(|layer| {
                 let draws = views.iter().find(|draws| draws.view.layer() == layer);
-                draws.map_or_else(
-                    || empty(layer),
-                    |draws| crate::receive::view_uniform(&draws.view, &self.sampling),
-                )
+                let uniform = draws.map_or_else(
+                    || empty_view_uniform(layer, anchor_render),
+                    |draws| view_uniform(&draws.view, &self.sampling),
+                );
+                ShadowViewUniform {
+                    viewer,
+                    range,
+                    sample_radius,
+                    ..uniform
+                }
             })
             .collect();
         let upload = self
@@ -152,8 +183,9 @@ impl LightMaps {
         let prepared = self.recorder.prepare(device, &views)?;
         // Nothing fails from here on.
         self.uniforms.commit(encoder, upload);
-        self.recorder
-            .record(encoder, &self.map, prepared, &mut views, casters);
+        self.report.passes = self
+            .recorder
+            .record(device, encoder, &self.map, prepared, &mut views, casters);
         self.uniform_values = uniform_values;
         self.spare = std::mem::replace(&mut self.views, views);
         self.fill_report(casters.len() as u32);

@@ -4,9 +4,8 @@ use glam::DVec3;
 
 use crate::cast::{ShadowCaster, ViewDraws};
 use crate::check;
-use crate::fit::{LightAxes, LocalFit, LocalInput, MAX_LOCAL_VIEWS};
-use crate::light_maps::LightMaps;
-use crate::receive::empty_view_uniform;
+use crate::fit::{CameraFrustum, LightAxes, LocalFit, LocalInput, MAX_LOCAL_VIEWS};
+use crate::light_maps::{LightMaps, MapsFrame};
 use crate::{Aabb, CameraView, ShadowError, ShadowReport, ShadowView};
 
 /// Per-frame state of a local light's views.
@@ -64,6 +63,7 @@ impl LocalViews {
             .camera
             .map(|camera| camera.frustum(view_field, clip_field, distance_field))
             .transpose()?;
+        let viewer_render = camera.as_ref().map(CameraFrustum::eye_render);
         check::caster_bounds(fields.casters, frame.casters, &mut self.bounds)?;
         check::receiver_bounds(fields.receivers, frame.receivers)?;
 
@@ -104,8 +104,14 @@ impl LocalViews {
             }
         }
         let anchor_render = (frame.position_world - frame.origin).as_vec3();
-        let empty = |layer| empty_view_uniform(layer, anchor_render);
-        let report = maps.record(device, encoder, views, empty, frame.casters)?;
+        let maps_frame = MapsFrame {
+            views,
+            anchor_render,
+            reach_world: fit.reach,
+            viewer_render,
+            casters: frame.casters,
+        };
+        let report = maps.record(device, encoder, maps_frame)?;
         self.fit = fit;
         Ok(report)
     }

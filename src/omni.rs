@@ -1,13 +1,13 @@
 //! `OmniShadow`: a light that shines in every direction.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use crate::cast::ShadowCaster;
 use crate::check;
 use crate::fit::LightAxes;
 use crate::light_maps::{LightMaps, LightMapsDescriptor, light_maps_getters};
 use crate::local_light::{LocalFields, LocalFrame, LocalViews};
-use crate::receive::{Sampling, Selection, empty_view_uniform};
+use crate::receive::{Sampling, Selection};
 use crate::{Aabb, Bias, CameraView, Filter, ShadowError, ShadowReport};
 
 /// What an [`OmniShadow`] is made of.
@@ -103,7 +103,6 @@ impl OmniShadow {
                     bias: descriptor.bias,
                 },
                 selection: Selection::CubeFace,
-                empty: empty_view_uniform(0, Vec3::ZERO),
             },
         )?;
         Ok(Self {

@@ -54,17 +54,15 @@ impl ViewReport {
 pub struct ShadowReport {
     /// One entry per view, in the order of layers.
     pub views: Vec<ViewReport>,
+    /// Depth passes recorded: one per drawn view, or a single one for the six faces of a point light where that is cheaper
+    /// (`Features::MULTIVIEW`, and most casters touching most faces).
+    pub passes: u32,
     /// Device memory of the depth texture.
     pub bytes_held: u64,
 }
 
 impl ShadowReport {
-    /// Passes recorded.
-    pub fn passes(&self) -> u32 {
-        self.drawn().count() as u32
-    }
-
-    /// Caster draws recorded.
+    /// Casters drawn, summed over the views that were drawn.
     pub fn draws(&self) -> u32 {
         self.drawn().map(|view| view.casters).sum()
     }

@@ -2,7 +2,7 @@
 //!
 //! All names begin with `shadow_`, `Shadow` or `SHADOW_`, so the texts concatenate with any engine's, in any order, and load
 //! as they are as WESL or naga_oil modules. Sampling functions take texture, sampler and view as arguments; nothing in
-//! [`MODULES`] declares a binding but `caster` and the two pass modules. An engine with its own bind groups composes
+//! [`MODULES`] declares a binding but the caster modules and those of whole passes. An engine with its own bind groups composes
 //! `["bias_plane", "filter_tent_narrow"]` and calls
 //! `shadow_filter_tent_narrow(map, map_sampler, shadow_receiver_plane(view, position, normal))`.
 
@@ -32,7 +32,15 @@ macro_rules! module {
 pub(crate) const CASTER: ShaderModule = module!("caster", "caster.wgsl", []);
 pub(crate) const CASTER_BUILTIN: ShaderModule =
     module!("caster_builtin", "pass/caster_builtin.wgsl", ["caster"]);
-pub(crate) const DEBUG_VIEW: ShaderModule = module!("debug_view", "pass/debug_view.wgsl", []);
+pub(crate) const CASTER_MULTIVIEW: ShaderModule =
+    module!("caster_multiview", "caster_multiview.wgsl", []);
+pub(crate) const CASTER_BUILTIN_MULTIVIEW: ShaderModule = module!(
+    "caster_builtin_multiview",
+    "pass/caster_builtin_multiview.wgsl",
+    ["caster_multiview"]
+);
+pub(crate) const DEBUG_VIEW: ShaderModule =
+    module!("debug_view", "pass/debug_view.wgsl", ["view", "cube_face"]);
 
 /// Every WGSL text of the library.
 pub const MODULES: &[ShaderModule] = &[
@@ -41,9 +49,9 @@ pub const MODULES: &[ShaderModule] = &[
     module!("bias_normal_offset", "bias_normal_offset.wgsl", ["view"]),
     module!("bias_manual", "bias_manual.wgsl", ["view"]),
     module!("gather", "gather.wgsl", ["view"]),
-    module!("filter_nearest", "filter_nearest.wgsl", ["view"]),
+    module!("filter_nearest", "filter_nearest.wgsl", ["view", "gather"]),
     module!("filter_hardware", "filter_hardware.wgsl", ["view"]),
-    module!("filter_box", "filter_box.wgsl", ["view"]),
+    module!("filter_box", "filter_box.wgsl", ["view", "gather"]),
     module!(
         "filter_bilinear",
         "filter_bilinear.wgsl",
@@ -64,10 +72,13 @@ pub const MODULES: &[ShaderModule] = &[
         "filter_tent_wide.wgsl",
         ["view", "gather"]
     ),
+    module!("filter_direction", "filter_direction.wgsl", ["view"]),
     module!("cube_face", "cube_face.wgsl", []),
     module!("normal", "normal.wgsl", []),
     CASTER,
     CASTER_BUILTIN,
+    CASTER_MULTIVIEW,
+    CASTER_BUILTIN_MULTIVIEW,
     DEBUG_VIEW,
 ];
 

@@ -7,7 +7,7 @@ use crate::check;
 use crate::fit::LightAxes;
 use crate::light_maps::{LightMaps, LightMapsDescriptor, light_maps_getters};
 use crate::local_light::{LocalFields, LocalFrame, LocalViews};
-use crate::receive::{Sampling, Selection, empty_view_uniform};
+use crate::receive::{Sampling, Selection};
 use crate::{Aabb, Bias, CameraView, Filter, ShadowError, ShadowReport};
 
 /// What a [`SpotShadow`] is made of.
@@ -99,7 +99,7 @@ impl SpotShadow {
         device: &wgpu::Device,
         descriptor: &SpotShadowDescriptor<'_>,
     ) -> Result<Self, ShadowError> {
-        check::filter("SpotShadowDescriptor::filter", descriptor.filter)?;
+        check::planar_filter("SpotShadowDescriptor::filter", descriptor.filter)?;
         check::bias("SpotShadowDescriptor::bias", descriptor.bias)?;
         let maps = LightMaps::new(
             device,
@@ -113,7 +113,6 @@ impl SpotShadow {
                     bias: descriptor.bias,
                 },
                 selection: Selection::FirstInside,
-                empty: empty_view_uniform(0, Vec3::ZERO),
             },
         )?;
         Ok(Self {

@@ -1,16 +1,15 @@
-// The textbook's 3x3 percentage-closer filter: the mean of nine nearest comparisons one texel apart, in steps of a ninth.
-// Reach: one and a half texels. Rust twin: src/receive/reference.rs. Requires: view.
+// The textbook's 3x3 percentage-closer filter: the mean of nine nearest comparisons one texel apart, in steps of a ninth, out
+// of four gathers. Reach: one and a half texels. Rust twin: src/receive/reference.rs. Requires: view, gather.
 
-fn shadow_filter_box(map: texture_depth_2d_array, receiver: ShadowReceiver) -> f32 {
-    let middle = floor(receiver.texel);
-    var lit = 0.0;
-    for (var y = -1; y <= 1; y++) {
-        for (var x = -1; x <= 1; x++) {
-            let texel = middle + vec2<f32>(f32(x), f32(y));
-            let rise = dot(receiver.gradient, texel + 0.5 - receiver.texel);
-            let depth = textureLoad(map, vec2<i32>(texel), receiver.layer, 0);
-            lit += select(0.0, 1.0, receiver.depth + max(rise, 0.0) >= depth);
-        }
-    }
-    return lit / 9.0;
+fn shadow_filter_box(
+    map: texture_depth_2d_array,
+    map_sampler: sampler,
+    receiver: ShadowReceiver,
+) -> f32 {
+    let first = floor(receiver.texel) - 1.0;
+    let near = shadow_gather(map, map_sampler, receiver, first);
+    let right = shadow_gather(map, map_sampler, receiver, first + vec2<f32>(2.0, 0.0));
+    let below = shadow_gather(map, map_sampler, receiver, first + vec2<f32>(0.0, 2.0));
+    let corner = shadow_gather(map, map_sampler, receiver, first + 2.0);
+    return (dot(near, vec4<f32>(1.0)) + right.x + right.z + below.x + below.y + corner.x) / 9.0;
 }

@@ -36,7 +36,10 @@ struct ShadowView {
     range: f32,
     // Cosine of the half-angle of a cone around the view's axis; -2 for none.
     cone_cosine: f32,
-    padding: f32,
+    // Radius in world units of the direction-space filters.
+    sample_radius: f32,
+    // The viewer in render space; w = 0 where no viewer is known.
+    viewer: vec4<f32>,
 }
 
 struct ShadowReceiver {

@@ -31,16 +31,12 @@ impl Gpu {
         let adapter = adapter.ok_or(
             "no graphics adapter was found (on Debian: apt-get install mesa-vulkan-drivers)",
         )?;
-        let optional =
+        let timing =
             wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS;
-        let timestamps = adapter.features().contains(optional);
+        let timestamps = adapter.features().contains(timing);
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("gltf example"),
-            required_features: if timestamps {
-                optional
-            } else {
-                wgpu::Features::empty()
-            },
+            required_features: adapter.features() & (timing | wgpu::Features::MULTIVIEW),
             required_limits: adapter.limits(),
             ..Default::default()
         }))

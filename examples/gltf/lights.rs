@@ -337,7 +337,7 @@ fn report_value(report: &ShadowReport) -> Value {
         .collect();
     json!({
         "views": views,
-        "passes": report.passes(),
+        "passes": report.passes,
         "draws": report.draws(),
         "bytes_held": report.bytes_held,
     })

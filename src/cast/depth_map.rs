@@ -6,6 +6,7 @@ use crate::cast::{DEPTH_FORMAT, DeviceRefusal, capture_device_errors};
 /// A layered depth texture, with one attachment per layer and one view of them all.
 #[derive(Debug)]
 pub(crate) struct DepthMap {
+    layers: u32,
     texture: wgpu::Texture,
     array_view: wgpu::TextureView,
     layer_views: Vec<wgpu::TextureView>,
@@ -36,10 +37,11 @@ impl DepthMap {
                 value: size,
             });
         }
+        let allocated = allocated_layers(device, layers);
         let extent = wgpu::Extent3d {
             width: size,
             height: size,
-            depth_or_array_layers: layers,
+            depth_or_array_layers: allocated,
         };
         let create = || {
             let texture = device.create_texture(&wgpu::TextureDescriptor {
@@ -71,6 +73,7 @@ impl DepthMap {
                 })
                 .collect();
             Self {
+                layers,
                 texture,
                 array_view,
                 layer_views,
@@ -79,7 +82,7 @@ impl DepthMap {
         capture_device_errors(device, create).map_err(|refusal| match refusal {
             DeviceRefusal::OutOfMemory => ShadowError::OutOfMemory {
                 field,
-                bytes: bytes(size, layers),
+                bytes: bytes(size, allocated),
             },
             DeviceRefusal::Refused(message) => ShadowError::Device {
                 object: "the depth map",
@@ -105,13 +108,21 @@ impl DepthMap {
     }
 
     pub fn layers(&self) -> u32 {
-        self.texture.depth_or_array_layers()
+        self.layers
     }
 
     /// Device memory of all layers.
     pub fn bytes(&self) -> u64 {
-        bytes(self.size(), self.layers())
+        bytes(self.size(), self.texture.depth_or_array_layers())
     }
+}
+
+/// wgpu's OpenGL backend makes a texture of one layer a plain 2D texture, and a square one of a multiple of six layers a cube
+/// map; an array binding then reads nothing. One layer more, never used, keeps it an array.
+fn allocated_layers(device: &wgpu::Device, layers: u32) -> u32 {
+    let opengl = device.adapter_info().backend == wgpu::Backend::Gl;
+    let not_an_array = layers == 1 || layers.is_multiple_of(6);
+    layers + u32::from(opengl && not_an_array)
 }
 
 fn bytes(size: u32, layers: u32) -> u64 {

@@ -1,8 +1,10 @@
 //! How one kind of caster is laid out and shaded: the depth-only pipelines.
 
-use crate::cast::{DEPTH_FORMAT, DeviceRefusal, capture_device_errors};
+use std::sync::{Arc, OnceLock};
+
+use crate::cast::pipeline_build::{self, BuiltIn};
+use crate::cast::{DeviceRefusal, capture_device_errors};
 use crate::error::CasterError;
-use crate::shader;
 
 /// Where the built-in vertex stage finds positions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -119,14 +121,28 @@ impl Default for CasterPipelineDescriptor<'_> {
     }
 }
 
-/// A depth-only pipeline for one kind of caster. Cheap to clone: a handle.
-#[derive(Clone, Debug, PartialEq)]
+/// Depth-only pipelines for one kind of caster. Cheap to clone: a handle.
+#[derive(Clone, Debug)]
 pub struct CasterPipeline {
-    pipeline: wgpu::RenderPipeline,
-    /// The same with the other winding, for transforms that mirror; equal where nothing is culled.
-    mirrored: wgpu::RenderPipeline,
-    model: ModelTransform,
-    position: Option<PositionAttribute>,
+    variants: Arc<Variants>,
+    /// For transforms that mirror: the other winding.
+    mirrored: bool,
+}
+
+#[derive(Debug)]
+struct Variants {
+    /// As described, and with the other winding; the same where nothing is culled.
+    plain: [wgpu::RenderPipeline; 2],
+    /// The same for six views in one pass, made when first wanted; none where the device refuses.
+    six_views: OnceLock<Option<[wgpu::RenderPipeline; 2]>>,
+    /// None for the engine's own WGSL.
+    built_in: Option<BuiltIn>,
+}
+
+impl PartialEq for CasterPipeline {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.variants, &other.variants) && self.mirrored == other.mirrored
+    }
 }
 
 impl CasterPipeline {
@@ -140,94 +156,83 @@ impl CasterPipeline {
         descriptor: &CasterPipelineDescriptor<'_>,
     ) -> Result<Self, CasterError> {
         check_topology(descriptor)?;
-        let (position, model) = match descriptor.vertex {
+        let built_in = match descriptor.vertex {
             CasterVertex::BuiltIn { position, model } => {
                 check_position(&position)?;
                 check_model(&model)?;
-                (Some(position), model)
+                Some(BuiltIn {
+                    position,
+                    model,
+                    cull: descriptor.cull,
+                    front_face: descriptor.front_face,
+                    topology: descriptor.topology,
+                    strip_index_format: descriptor.strip_index_format,
+                })
             }
-            CasterVertex::Wgsl { .. } => (None, ModelTransform::Identity),
+            CasterVertex::Wgsl { .. } => None,
         };
-        let create_both = || {
-            let pipeline = create(device, descriptor);
-            let mirrored = if descriptor.cull.is_some() {
-                let front_face = match descriptor.front_face {
-                    wgpu::FrontFace::Ccw => wgpu::FrontFace::Cw,
-                    wgpu::FrontFace::Cw => wgpu::FrontFace::Ccw,
-                };
-                create(
-                    device,
-                    &CasterPipelineDescriptor {
-                        front_face,
-                        ..*descriptor
-                    },
-                )
-            } else {
-                pipeline.clone()
-            };
-            Self {
-                pipeline,
-                mirrored,
-                model,
-                position,
-            }
-        };
-        capture_device_errors(device, create_both).map_err(|refusal| CasterError::Device {
-            message: match refusal {
-                DeviceRefusal::OutOfMemory => "out of memory".to_owned(),
-                DeviceRefusal::Refused(message) => message,
-            },
+        let plain = capture_device_errors(device, || pipeline_build::plain(device, descriptor))
+            .map_err(|refusal| CasterError::Device {
+                message: match refusal {
+                    DeviceRefusal::OutOfMemory => "out of memory".to_owned(),
+                    DeviceRefusal::Refused(message) => message,
+                },
+            })?;
+        Ok(Self {
+            variants: Arc::new(Variants {
+                plain,
+                six_views: OnceLock::new(),
+                built_in,
+            }),
+            mirrored: false,
         })
     }
 
     /// The wgpu pipeline, for engines that record depth passes of their own.
     pub fn wgpu_pipeline(&self) -> &wgpu::RenderPipeline {
-        &self.pipeline
+        &self.variants.plain[usize::from(self.mirrored)]
     }
 
     /// The same pipeline for casters whose transform mirrors (negative determinant), so that culling takes the same faces.
     pub fn mirrored(&self) -> Self {
         Self {
-            pipeline: self.mirrored.clone(),
-            mirrored: self.pipeline.clone(),
-            ..*self
+            variants: Arc::clone(&self.variants),
+            mirrored: !self.mirrored,
         }
-    }
-
-    /// Bytes that a vertex buffer must have to hold `vertices`; 0 where the engine lays its own vertices out.
-    pub(crate) fn vertex_bytes(&self, vertices: &std::ops::Range<u32>) -> u64 {
-        self.position.map_or(0, |position| {
-            let last = vertices.end.saturating_sub(1);
-            let size = position.offset + position.format.size();
-            if vertices.is_empty() {
-                0
-            } else {
-                u64::from(last) * position.array_stride + size
-            }
-        })
     }
 
     /// Where the built-in vertex stage expects the transform ([`ModelTransform::Identity`] for the engine's own WGSL).
     pub fn model_transform(&self) -> ModelTransform {
-        self.model
+        self.variants
+            .built_in
+            .map_or(ModelTransform::Identity, |built_in| built_in.model)
     }
-}
 
-/// Layout of bind group 0 of every caster pipeline: the view being rendered, chosen by a dynamic offset.
-pub(crate) fn view_bind_group_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("shadow caster view"),
-        entries: &[wgpu::BindGroupLayoutEntry {
-            binding: 0,
-            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-            ty: wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Uniform,
-                has_dynamic_offset: true,
-                min_binding_size: wgpu::BufferSize::new(crate::cast::recorder::VIEW_UNIFORM_BYTES),
-            },
-            count: None,
-        }],
-    })
+    /// The pipeline that draws the six faces of a cube in one pass; none for the engine's own WGSL. Asked only on devices with
+    /// `Features::MULTIVIEW`.
+    pub(crate) fn six_views(&self, device: &wgpu::Device) -> Option<&wgpu::RenderPipeline> {
+        let built_in = self.variants.built_in.as_ref()?;
+        self.variants
+            .six_views
+            .get_or_init(|| {
+                capture_device_errors(device, || pipeline_build::six_views(device, built_in)).ok()
+            })
+            .as_ref()
+            .map(|pipelines| &pipelines[usize::from(self.mirrored)])
+    }
+
+    /// Bytes that a vertex buffer must have to hold `vertices`; 0 where the engine lays its own vertices out.
+    pub(crate) fn vertex_bytes(&self, vertices: &std::ops::Range<u32>) -> u64 {
+        self.variants.built_in.map_or(0, |built_in| {
+            let position = built_in.position;
+            let last = vertices.end.saturating_sub(1);
+            if vertices.is_empty() {
+                0
+            } else {
+                u64::from(last) * position.array_stride + position.offset + position.format.size()
+            }
+        })
+    }
 }
 
 fn check_topology(descriptor: &CasterPipelineDescriptor<'_>) -> Result<(), CasterError> {
@@ -303,131 +308,4 @@ fn check_attribute(
             array_stride,
         })
     }
-}
-
-fn create(
-    device: &wgpu::Device,
-    descriptor: &CasterPipelineDescriptor<'_>,
-) -> wgpu::RenderPipeline {
-    match descriptor.vertex {
-        CasterVertex::BuiltIn { position, model } => {
-            let position_attribute = [wgpu::VertexAttribute {
-                format: position.format,
-                offset: position.offset,
-                shader_location: 0,
-            }];
-            let position_layout = wgpu::VertexBufferLayout {
-                array_stride: position.array_stride,
-                step_mode: wgpu::VertexStepMode::Vertex,
-                attributes: &position_attribute,
-            };
-            let (entry, matrix) = match model {
-                ModelTransform::Identity => ("shadow_caster_vertex_identity", None),
-                ModelTransform::InstanceMatrix {
-                    array_stride,
-                    offset,
-                } => (
-                    "shadow_caster_vertex_instance",
-                    Some((array_stride, offset)),
-                ),
-            };
-            let columns = [1, 2, 3, 4].map(|location| wgpu::VertexAttribute {
-                format: wgpu::VertexFormat::Float32x4,
-                offset: matrix.map_or(0, |(_, offset)| offset) + 16 * u64::from(location - 1),
-                shader_location: location,
-            });
-            let matrix_layout = matrix.map(|(array_stride, _)| wgpu::VertexBufferLayout {
-                array_stride,
-                step_mode: wgpu::VertexStepMode::Instance,
-                attributes: &columns,
-            });
-            let layouts = [Some(position_layout), matrix_layout];
-            let used = if matrix.is_some() { 2 } else { 1 };
-            let source = format!("{}{}", shader::CASTER.source, shader::CASTER_BUILTIN.source);
-            create_from(
-                device,
-                descriptor,
-                &source,
-                entry,
-                None,
-                &layouts[..used],
-                &[],
-            )
-        }
-        CasterVertex::Wgsl {
-            source,
-            vertex_entry,
-            fragment_entry,
-            buffers,
-            bind_group_layouts,
-        } => {
-            let source = format!("{}{source}", shader::CASTER.source);
-            create_from(
-                device,
-                descriptor,
-                &source,
-                vertex_entry,
-                fragment_entry,
-                buffers,
-                bind_group_layouts,
-            )
-        }
-    }
-}
-
-fn create_from(
-    device: &wgpu::Device,
-    descriptor: &CasterPipelineDescriptor<'_>,
-    source: &str,
-    vertex_entry: &str,
-    fragment_entry: Option<&str>,
-    buffers: &[Option<wgpu::VertexBufferLayout<'_>>],
-    bind_group_layouts: &[Option<&wgpu::BindGroupLayout>],
-) -> wgpu::RenderPipeline {
-    let label = descriptor.label.unwrap_or("shadow caster");
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some(label),
-        source: wgpu::ShaderSource::Wgsl(source.into()),
-    });
-    let view_layout = view_bind_group_layout(device);
-    let mut groups = vec![Some(&view_layout)];
-    groups.extend_from_slice(bind_group_layouts);
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some(label),
-        bind_group_layouts: &groups,
-        immediate_size: 0,
-    });
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(label),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some(vertex_entry),
-            compilation_options: Default::default(),
-            buffers,
-        },
-        primitive: wgpu::PrimitiveState {
-            topology: descriptor.topology,
-            strip_index_format: descriptor.strip_index_format,
-            front_face: descriptor.front_face,
-            cull_mode: descriptor.cull,
-            ..Default::default()
-        },
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: DEPTH_FORMAT,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        }),
-        multisample: wgpu::MultisampleState::default(),
-        fragment: fragment_entry.map(|entry| wgpu::FragmentState {
-            module: &module,
-            entry_point: Some(entry),
-            compilation_options: Default::default(),
-            targets: &[],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
 }

@@ -2,7 +2,8 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::cast::pipeline::view_bind_group_layout;
+use crate::cast::cube_pass::CubePass;
+use crate::cast::pipeline_build::view_layout;
 use crate::cast::upload::{PendingUpload, UploadBuffer};
 use crate::cast::{CasterPipeline, DepthMap, Revision, ShadowCaster};
 use crate::fit::ViewPlacement;
@@ -17,6 +18,9 @@ pub(crate) struct CasterViewUniform {
     pub map_size: f32,
 }
 
+/// Faces of a cube.
+pub(crate) const FACE_COUNT: u32 = 6;
+
 pub(crate) const VIEW_UNIFORM_BYTES: u64 = size_of::<CasterViewUniform>() as u64;
 
 /// One view of this frame and the casters that it needs, by index.
@@ -29,10 +33,30 @@ pub(crate) struct ViewDraws {
 }
 
 /// What a layer of the map holds.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 struct Content {
-    placement: ViewPlacement,
+    /// None before the first pass.
+    placement: Option<ViewPlacement>,
     revisions: Vec<Revision>,
+}
+
+impl Content {
+    /// Takes on what `draws` will put there; false where the layer holds it already.
+    fn replace(&mut self, draws: &ViewDraws, casters: &[&dyn ShadowCaster]) -> bool {
+        let revisions = draws
+            .casters
+            .iter()
+            .map(|&index| casters[index as usize].revision());
+        let held = self.placement == Some(*draws.view.placement())
+            && self.revisions.iter().all(Revision::is_stable)
+            && self.revisions.iter().copied().eq(revisions.clone());
+        if !held {
+            self.placement = Some(*draws.view.placement());
+            self.revisions.clear();
+            self.revisions.extend(revisions);
+        }
+        !held
+    }
 }
 
 /// Draws views into the layers of a depth map, and remembers what each layer holds.
@@ -42,17 +66,35 @@ pub(crate) struct Recorder {
     uniforms: UploadBuffer,
     stride: u64,
     bind_group: wgpu::BindGroup,
-    contents: Vec<Option<Content>>,
+    contents: Vec<Content>,
+    /// Where the layers are the faces of a cube and the device can draw them at once.
+    cube: Option<CubePass>,
 }
 
 /// Everything that could fail, done before the encoder is touched.
 pub(crate) struct PreparedViews {
-    upload: Option<PendingUpload>,
+    views: Option<PendingUpload>,
+    faces: Option<PendingUpload>,
+}
+
+impl CasterViewUniform {
+    pub fn of(view: &ShadowView) -> Self {
+        Self {
+            clip_from_anchor: view.clip_from_anchor().to_cols_array_2d(),
+            anchor_render: view.anchor_render().to_array(),
+            map_size: view.map_size() as f32,
+        }
+    }
 }
 
 impl Recorder {
-    /// For maps of `layers` layers.
-    pub fn new(device: &wgpu::Device, label: &str, layers: u32) -> Result<Self, ShadowError> {
+    /// For maps of `layers` layers; `is_cube` where they are the six faces of one.
+    pub fn new(
+        device: &wgpu::Device,
+        label: &str,
+        layers: u32,
+        is_cube: bool,
+    ) -> Result<Self, ShadowError> {
         let alignment = u64::from(device.limits().min_uniform_buffer_offset_alignment);
         let stride = VIEW_UNIFORM_BYTES.next_multiple_of(alignment);
         let uniforms = UploadBuffer::new(
@@ -62,7 +104,7 @@ impl Recorder {
         )?;
         let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some(&format!("{label} caster views")),
-            layout: &view_bind_group_layout(device),
+            layout: &view_layout(device),
             entries: &[wgpu::BindGroupEntry {
                 binding: 0,
                 resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
@@ -77,7 +119,12 @@ impl Recorder {
             uniforms,
             stride,
             bind_group,
-            contents: vec![None; layers as usize],
+            contents: vec![Content::default(); layers as usize],
+            cube: if is_cube {
+                CubePass::new(device, label)?
+            } else {
+                None
+            },
         })
     }
 
@@ -89,51 +136,55 @@ impl Recorder {
     ) -> Result<PreparedViews, ShadowError> {
         let mut bytes = vec![0; self.stride as usize * self.contents.len()];
         for draws in views {
-            let uniform = CasterViewUniform {
-                clip_from_anchor: draws.view.clip_from_anchor().to_cols_array_2d(),
-                anchor_render: draws.view.anchor_render().to_array(),
-                map_size: draws.view.map_size() as f32,
-            };
+            let uniform = CasterViewUniform::of(&draws.view);
             let start = self.stride as usize * draws.view.layer() as usize;
             bytes[start..][..size_of_val(&uniform)].copy_from_slice(bytemuck::bytes_of(&uniform));
         }
         Ok(PreparedViews {
-            upload: self.uniforms.prepare(device, &bytes)?,
+            views: self.uniforms.prepare(device, &bytes)?,
+            faces: match &self.cube {
+                Some(cube) => cube.prepare(device, views)?,
+                None => None,
+            },
         })
     }
 
-    /// Records a pass for each view whose layer does not hold it already.
+    /// Records what the layers do not hold already: a pass a view, or one pass for six faces. Returns the number of passes.
     pub fn record(
         &mut self,
+        device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
         map: &DepthMap,
         prepared: PreparedViews,
         views: &mut [ViewDraws],
         casters: &[&dyn ShadowCaster],
-    ) {
-        self.uniforms.commit(encoder, prepared.upload);
-        for draws in views {
-            let layer = draws.view.layer() as usize;
-            let revisions = draws
-                .casters
-                .iter()
-                .map(|&index| casters[index as usize].revision());
-            draws.drawn = !self.contents[layer].as_ref().is_some_and(|content| {
-                content.placement == *draws.view.placement()
-                    && content.revisions.iter().all(Revision::is_stable)
-                    && content.revisions.iter().copied().eq(revisions.clone())
-            });
-            if draws.drawn {
-                let content = self.contents[layer].get_or_insert_with(|| Content {
-                    placement: *draws.view.placement(),
-                    revisions: Vec::new(),
-                });
-                content.placement = *draws.view.placement();
-                content.revisions.clear();
-                content.revisions.extend(revisions);
-                self.draw(encoder, map, draws, casters);
+    ) -> u32 {
+        self.uniforms.commit(encoder, prepared.views);
+        if let Some(cube) = &mut self.cube {
+            cube.commit(encoder, prepared.faces);
+        }
+        for draws in views.iter_mut() {
+            draws.drawn = self.contents[draws.view.layer() as usize].replace(draws, casters);
+        }
+        if let (Some(cube), Some(first)) = (&mut self.cube, views.first())
+            && cube.is_worth_it(device, views, casters)
+        {
+            {
+                cube.draw(
+                    device,
+                    encoder,
+                    &self.label,
+                    map.array_view(),
+                    first,
+                    casters,
+                );
+                return 1;
             }
         }
+        let drawn = views.iter().filter(|draws| draws.drawn);
+        drawn
+            .map(|draws| self.draw(encoder, map, draws, casters))
+            .count() as u32
     }
 
     fn draw(
@@ -147,14 +198,7 @@ impl Recorder {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(&format!("{} layer {layer}", self.label)),
             color_attachments: &[],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: map.layer_view(layer),
-                depth_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(0.0),
-                    store: wgpu::StoreOp::Store,
-                }),
-                stencil_ops: None,
-            }),
+            depth_stencil_attachment: Some(super::depth_attachment(map.layer_view(layer))),
             timestamp_writes: None,
             occlusion_query_set: None,
             multiview_mask: None,
@@ -175,7 +219,10 @@ impl Recorder {
 
     /// Forgets what the layers hold, so that every view is drawn again.
     pub fn invalidate(&mut self) {
-        self.contents.fill(None);
+        self.contents.fill(Content::default());
         self.uniforms.invalidate();
+        if let Some(cube) = &mut self.cube {
+            cube.invalidate();
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! The engine's camera, taken as any pair of matrices, as half-spaces and as depth along the view.
 
-use glam::{DMat4, DVec3, DVec4, Mat4};
+use glam::{DMat4, DVec3, DVec4, Mat4, Vec3};
 
 use crate::ShadowError;
 use crate::fit::region::{HalfSpace, HalfSpaces};
@@ -51,7 +51,7 @@ impl CameraView {
     ) -> Result<CameraFrustum, ShadowError> {
         let view_from_render = checked(&self.view_from_render, view_field)?;
         let clip_from_view = checked(&self.clip_from_view, clip_field)?;
-        if !(self.max_distance > 0.0) {
+        if self.max_distance.is_nan() || self.max_distance <= 0.0 {
             return Err(ShadowError::OutOfRange {
                 field: distance_field,
                 rule: "above 0 (infinity allowed)",
@@ -110,6 +110,11 @@ pub(crate) struct CameraFrustum {
 }
 
 impl CameraFrustum {
+    /// Where the camera stands.
+    pub fn eye_render(&self) -> Vec3 {
+        self.eye.as_vec3()
+    }
+
     /// Depth along the view in world units.
     pub fn depth(&self, point_render: DVec3) -> f64 {
         self.forward.dot(point_render - self.eye)

@@ -5,6 +5,7 @@ use glam::DVec3;
 use crate::Aabb;
 use crate::fit::axes::{LightAxes, LightBox};
 use crate::fit::camera::CameraFrustum;
+use crate::fit::region::{HalfSpace, HalfSpaces};
 use crate::fit::split::CascadeSplit;
 use crate::fit::window::{DepthRange, MapWindow, OrthoWindow, WindowRequest};
 
@@ -14,7 +15,7 @@ pub(crate) const MAX_CASCADES: usize = 8;
 /// Where receivers count.
 pub(crate) enum Region {
     /// What a camera sees of them.
-    Camera(CameraFrustum),
+    Camera(Box<CameraFrustum>),
     /// All that lies in a given box; the window then is the box, whatever the casters.
     Bounds(Aabb),
 }
@@ -112,7 +113,7 @@ impl DirectionalFit {
             }
             Region::Camera(frustum) => frustum,
         };
-        if !(visible.depth_near <= visible.depth_far) {
+        if visible.depth_near > visible.depth_far {
             return None;
         }
         let end = |index| {
@@ -227,15 +228,44 @@ fn fit_window(
         plane,
         depth: depth(covered.max.z),
     };
-    // The rounded window is larger than what was asked for: casters that touch only its rim must lie in its depth range too.
-    let nearest = casters
-        .iter()
-        .filter(|caster| caster.can_shadow && window.holds_part_of(&caster.light))
-        .fold(covered.max.z, |near, caster| near.max(caster.light.max.z));
+    // Only what stands over the window counts for the near plane: a wide ground's far end does not. The rounded window is
+    // larger than what was asked for, so this also takes in casters that touch only its rim.
+    let over_window = window_column(input, &plane);
+    let mut nearest = covered.min.z;
+    for (caster, bounds) in casters.iter().zip(input.casters) {
+        if caster.can_shadow && caster.light.max.z > nearest && window.holds_part_of(&caster.light)
+        {
+            over_window.visit_vertices(bounds, |vertex| {
+                let z = input.axes.toward_light().dot(input.origin + vertex);
+                nearest = nearest.max(z);
+            });
+        }
+    }
     Some(OrthoWindow {
         depth: depth(nearest),
         ..window
     })
+}
+
+/// The four sides of a window, in render space.
+fn window_column(input: &FitInput<'_>, plane: &MapWindow) -> HalfSpaces {
+    let mut column = HalfSpaces::default();
+    let (min, max) = (plane.min, plane.max());
+    for (axis, low, high) in [
+        (input.axes.right(), min.x, max.x),
+        (input.axes.up(), min.y, max.y),
+    ] {
+        let origin = axis.dot(input.origin);
+        column.push(HalfSpace {
+            normal: axis,
+            offset: origin - low,
+        });
+        column.push(HalfSpace {
+            normal: -axis,
+            offset: high - origin,
+        });
+    }
+    column
 }
 
 /// Four ulps of f32 at the farthest render coordinate of the covered box: finer texels than positions would resolve nothing.

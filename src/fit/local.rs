@@ -72,7 +72,7 @@ impl LocalFit {
             held: self.held,
         };
         drawn.iter_mut().for_each(Vec::clear);
-        if !(reach > 0.0) {
+        if reach <= 0.0 {
             next.near = 1.0;
             return next;
         }

@@ -24,6 +24,7 @@ mod window;
 
 pub use axes::LightAxes;
 pub(crate) use axes::LightBox;
+pub(crate) use camera::CameraFrustum;
 pub use camera::CameraView;
 pub(crate) use directional::{
     CasterBounds, DirectionalFit, FitInput, FitLimits, MAX_CASCADES, Region,

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use crate::error::BindingsError;
 use crate::receive::filter::FilterSampler;
-use crate::receive::{Sampling, ShadowViewUniform};
+use crate::receive::{Bias, Sampling, ShadowViewUniform};
 use crate::shader;
 
 /// What a light gives its receivers: its map, its uniforms, and how to look them up.
@@ -20,6 +20,8 @@ pub(crate) struct Receiver<'a> {
     pub map: &'a wgpu::TextureView,
     pub views: &'a wgpu::Buffer,
     pub view_count: u32,
+    /// What `views` holds since the last frame.
+    pub uniforms: &'a [ShadowViewUniform],
     pub sampling: Sampling,
     pub selection: Selection,
 }
@@ -62,6 +64,8 @@ impl Default for ShadowBindingsDescriptor<'_> {
 /// The WGSL has one function per light, `shadow_NAME(position: vec3<f32>, normal: vec3<f32>) -> f32`: visibility in [0, 1] of
 /// the light from `position` (render space) on a surface with geometric normal `normal` (unit length, on the side that is
 /// shaded); and `shadow_geometric_normal(position)`. Where the map says nothing, beyond its sides or its far plane, it is 1.
+/// The variables `shadow_map_NAME` and `shadow_views_NAME` are the light's own texture and `array<ShadowView, N>`, for engines
+/// that want a lookup of their own beside it.
 #[derive(Debug)]
 pub struct ShadowBindings {
     layout: wgpu::BindGroupLayout,
@@ -222,9 +226,7 @@ fn create_layout(
         .map(|(binding, sampler)| {
             let ty = match sampler {
                 FilterSampler::Comparison => wgpu::SamplerBindingType::Comparison,
-                FilterSampler::Point | FilterSampler::None => {
-                    wgpu::SamplerBindingType::NonFiltering
-                }
+                FilterSampler::Point => wgpu::SamplerBindingType::NonFiltering,
             };
             entry(binding as u32, wgpu::BindingType::Sampler(ty))
         })
@@ -320,6 +322,7 @@ fn emit(
         modules.push(sampling.bias.scheme(sampling.filter).module());
         if source.receiver.selection == Selection::CubeFace {
             modules.push("cube_face");
+            modules.extend(sampling.filter.directions().map(|_| "filter_direction"));
         }
     }
     let mut text = shader::compose(&modules)?;
@@ -343,10 +346,7 @@ fn emit(
         let sampling = source.receiver.sampling;
         let make_receiver = sampling.bias.scheme(sampling.filter).function();
         let (filter, sampler) = sampling.filter.wgsl();
-        let arguments = match sampler {
-            FilterSampler::None => String::new(),
-            used => format!("{}, ", sampler_names(used).0),
-        };
+        let sampler = sampler_names(sampler).0;
         line(format_args!(
             "
 @group(SHADOW_GROUP) @binding({views}) var<uniform> shadow_views_{name}: array<ShadowView, {count}>;
@@ -362,13 +362,45 @@ fn shadow_{name}(position: vec3<f32>, normal: vec3<f32>) -> f32 {{
     for (var i = 0u; i < {count}u; i++) {{
         let receiver = {make_receiver}(shadow_views_{name}[i], position, normal);
         if receiver.inside {{
-            return shadow_{filter}(shadow_map_{name}, {arguments}receiver);
+            return shadow_{filter}(shadow_map_{name}, {sampler}, receiver);
         }}
     }}
     return 1.0;
 }}
 "
             )),
+            Selection::CubeFace if sampling.filter.directions().is_some() => {
+                let (offsets, count) = sampling.filter.directions().unwrap_or_default();
+                let meets = match sampling.bias {
+                    Bias::Manual { .. } => "shadow_direction_on_sphere(from_light, offset)",
+                    _ => "shadow_direction_on_plane(from_light, normal, offset)",
+                };
+                line(format_args!(
+                    "// Visibility in [0, 1]: the mean over {count} directions; 1 beyond the light's reach.
+fn shadow_{name}(position: vec3<f32>, normal: vec3<f32>) -> f32 {{
+    let anchor = shadow_views_{name}[0].anchor;
+    let from_light = position - anchor;
+    if length(from_light) > shadow_views_{name}[0].range {{
+        return 1.0;
+    }}
+    let radius = shadow_direction_radius(shadow_views_{name}[0], position);
+    var lit = 0.0;
+    for (var i = 0u; i < {count}u; i++) {{
+        let offset = {offsets}(i) * radius;
+        let place = {meets};
+        let face = shadow_cube_face(place);
+        let receiver = {make_receiver}(shadow_views_{name}[face], anchor + place, normal);
+        if receiver.inside {{
+            lit += shadow_{filter}(shadow_map_{name}, {sampler}, receiver);
+        }} else {{
+            lit += 1.0;
+        }}
+    }}
+    return lit / {count}.0;
+}}
+"
+                ));
+            }
             Selection::CubeFace => line(format_args!(
                 "// Visibility in [0, 1] by the face on which the place lies as seen from the light.
 fn shadow_{name}(position: vec3<f32>, normal: vec3<f32>) -> f32 {{
@@ -377,7 +409,7 @@ fn shadow_{name}(position: vec3<f32>, normal: vec3<f32>) -> f32 {{
     if !receiver.inside {{
         return 1.0;
     }}
-    return shadow_{filter}(shadow_map_{name}, {arguments}receiver);
+    return shadow_{filter}(shadow_map_{name}, {sampler}, receiver);
 }}
 "
             )),
@@ -389,6 +421,6 @@ fn shadow_{name}(position: vec3<f32>, normal: vec3<f32>) -> f32 {{
 fn sampler_names(sampler: FilterSampler) -> (&'static str, &'static str) {
     match sampler {
         FilterSampler::Comparison => ("shadow_comparison_sampler", "sampler_comparison"),
-        FilterSampler::Point | FilterSampler::None => ("shadow_point_sampler", "sampler"),
+        FilterSampler::Point => ("shadow_point_sampler", "sampler"),
     }
 }

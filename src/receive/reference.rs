@@ -92,7 +92,7 @@ pub fn receiver(
     }
 }
 
-/// What `filter` returns for `receiver`, in [0, 1].
+/// What `filter` returns for `receiver`, in [0, 1]; for a direction-space filter, what one of its samples returns.
 pub fn visibility(filter: Filter, map: &DepthLayer<'_>, receiver: &Receiver) -> f64 {
     if !receiver.inside {
         return 1.0;
@@ -142,7 +142,10 @@ enum Kernel {
 
 fn kernel(filter: Filter) -> Kernel {
     match filter {
-        Filter::Nearest => Kernel::Boxed(0),
+        // One sample of a direction-space filter is a nearest lookup.
+        Filter::Nearest | Filter::DirectionGrid { .. } | Filter::DirectionStar { .. } => {
+            Kernel::Boxed(0)
+        }
         Filter::Box => Kernel::Boxed(1),
         Filter::Hardware | Filter::Bilinear { .. } => Kernel::Bilinear(&[1.0]),
         Filter::TentNarrow { .. } => Kernel::Bilinear(&[1.0, 2.0, 1.0]),

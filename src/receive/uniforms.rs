@@ -49,12 +49,16 @@ pub struct ShadowViewUniform {
     pub range: f32,
     /// Cosine of the half-angle of a cone around the view's axis; -2 for none.
     pub cone_cosine: f32,
-    /// WGSL rounds the struct up to 16 bytes.
-    pub padding: f32,
+    /// Radius in world units of the direction-space filters.
+    pub sample_radius: f32,
+    /// The viewer in render space; w is 1, or 0 where no viewer is known.
+    pub viewer: [f32; 4],
 }
 
-/// A range that no distance exceeds, and whose square is finite.
-const ENDLESS: f32 = 1e18;
+/// A range for the uniforms: an endless one becomes a distance that none exceeds and whose square is finite.
+pub(crate) fn endless_range(reach_world: f64) -> f32 {
+    reach_world.min(1e18) as f32
+}
 
 /// How the maps of a light are looked up.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -118,8 +122,9 @@ pub(crate) fn view_uniform(view: &ShadowView, sampling: &Sampling) -> ShadowView
         manual_constant,
         manual_slope,
         sharpness: sampling.filter.sharpness(),
-        range: view.reach_world().min(f64::from(ENDLESS)) as f32,
+        range: endless_range(view.reach_world()),
         cone_cosine: view.cone_cosine() as f32,
-        padding: 0.0,
+        sample_radius: sampling.filter.radius_world(),
+        viewer: [0.0; 4],
     }
 }

@@ -1,21 +1,30 @@
-// One layer of a depth map as grey levels: black at the light's near plane, white at the far plane and where nothing casts.
+// Depth maps as grey levels: black at the light, white at the end of its reach and where nothing casts.
+//
+// Rust twin: src/debug_view.rs. Requires: view, cube_face.
 
 struct ShadowDebugView {
-    layer: u32,
-    map_size: f32,
+    // Which view, for the pictures of one.
+    index: u32,
+    // 1 where depth is near / distance (a local light), 0 where it is linear (a directional one).
+    local: u32,
 }
 
+// Most views that a light has.
+const SHADOW_DEBUG_VIEWS: u32 = 8u;
+
 @group(0) @binding(0) var<uniform> shadow_debug: ShadowDebugView;
-@group(0) @binding(1) var shadow_debug_map: texture_depth_2d_array;
+@group(0) @binding(1) var<uniform> shadow_debug_views: array<ShadowView, SHADOW_DEBUG_VIEWS>;
+@group(0) @binding(2) var shadow_debug_map: texture_depth_2d_array;
+@group(0) @binding(3) var shadow_debug_sampler: sampler;
 
 struct ShadowDebugVertex {
     @builtin(position) clip: vec4<f32>,
     @location(0) uv: vec2<f32>,
 }
 
+// One triangle over the whole viewport; uv from the top left.
 @vertex
 fn shadow_debug_vertex(@builtin(vertex_index) index: u32) -> ShadowDebugVertex {
-    // One triangle over the whole viewport.
     let corner = vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 2.0;
     var vertex: ShadowDebugVertex;
     vertex.clip = vec4<f32>(corner.x * 2.0 - 1.0, 1.0 - corner.y * 2.0, 0.0, 1.0);
@@ -23,11 +32,66 @@ fn shadow_debug_vertex(@builtin(vertex_index) index: u32) -> ShadowDebugVertex {
     return vertex;
 }
 
+// Distance from the light as a share of its reach, for the ray through `texel`.
+fn shadow_debug_grey(view: ShadowView, texel: vec2<f32>, ray: vec3<f32>) -> f32 {
+    let last = view.map_size - 1.0;
+    let inside = clamp(floor(texel), vec2<f32>(0.0), vec2<f32>(last));
+    // A gather and not a load: GLSL cannot load from a depth texture. Its last component is the first texel.
+    let corner = (inside + 1.0) / view.map_size;
+    let depth = textureGather(shadow_debug_map, shadow_debug_sampler, corner, view.layer).w;
+    if shadow_debug.local == 0u {
+        return 1.0 - depth;
+    }
+    // place.z is the near distance, and depth = near / distance along the axis.
+    let place = view.texel_from_anchor * vec4<f32>(ray, 1.0);
+    let along_axis = place.z / max(depth, 1e-30);
+    return clamp(along_axis * length(ray) / (place.w * view.range), 0.0, 1.0);
+}
+
+// One view: the map as it lies in its layer.
 @fragment
-fn shadow_debug_fragment(vertex: ShadowDebugVertex) -> @location(0) vec4<f32> {
-    let last = shadow_debug.map_size - 1.0;
-    let texel = clamp(floor(vertex.uv * shadow_debug.map_size), vec2<f32>(0.0), vec2<f32>(last));
-    let depth = textureLoad(shadow_debug_map, vec2<i32>(texel), shadow_debug.layer, 0);
-    // An orthographic depth is linear in distance; reversed, so that near is dark.
-    return vec4<f32>(vec3<f32>(1.0 - depth), 1.0);
+fn shadow_debug_layer(vertex: ShadowDebugVertex) -> @location(0) vec4<f32> {
+    let view = shadow_debug_views[shadow_debug.index];
+    if view.inner.x > view.inner.z {
+        return vec4<f32>(1.0);
+    }
+    let texel = vertex.uv * view.map_size;
+    // The ray through the texel: the planes of constant texel x and y through the anchor meet in it.
+    let columns = view.texel_from_anchor;
+    let rows = transpose(columns);
+    let across = rows[0].xyz - texel.x * rows[3].xyz;
+    let down = rows[1].xyz - texel.y * rows[3].xyz;
+    let ray = cross(across, down);
+    let forward = ray * select(-1.0, 1.0, dot(rows[3].xyz, ray) >= 0.0);
+    return vec4<f32>(vec3<f32>(shadow_debug_grey(view, texel, forward)), 1.0);
+}
+
+// Six faces of a cube unfolded around the one that looks along -z: +y on top, -x left, +x right, +z outermost right, -y below.
+@fragment
+fn shadow_debug_cross(vertex: ShadowDebugVertex) -> @location(0) vec4<f32> {
+    let cell = vec2<i32>(floor(vertex.uv * vec2<f32>(4.0, 3.0)));
+    let within = fract(vertex.uv * vec2<f32>(4.0, 3.0)) * 2.0 - 1.0;
+    let right = within.x;
+    let up = -within.y;
+    var ray: vec3<f32>;
+    if cell.y == 1 {
+        switch cell.x {
+            case 0: { ray = vec3<f32>(-1.0, up, -right); }
+            case 1: { ray = vec3<f32>(right, up, -1.0); }
+            case 2: { ray = vec3<f32>(1.0, up, right); }
+            default: { ray = vec3<f32>(-right, up, 1.0); }
+        }
+    } else if cell.x == 1 {
+        ray = select(vec3<f32>(right, -1.0, -up), vec3<f32>(right, 1.0, up), cell.y == 0);
+    } else {
+        return vec4<f32>(vec3<f32>(0.5), 1.0);
+    }
+    let view = shadow_debug_views[shadow_cube_face(ray)];
+    let place = view.texel_from_anchor * vec4<f32>(ray, 1.0);
+    let texel = place.xy / place.w;
+    let covered = all(texel >= view.inner.xy) && all(texel <= view.inner.zw);
+    if !covered {
+        return vec4<f32>(1.0);
+    }
+    return vec4<f32>(vec3<f32>(shadow_debug_grey(view, texel, ray)), 1.0);
 }

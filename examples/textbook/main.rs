@@ -1,0 +1,143 @@
+//! The shadow-mapping chapter of every graphics textbook, step by step: each mistake, its remedy, and a figure that proves it.
+//!
+//! `cargo run --example textbook [FOLDER]` draws one picture per step into `target/textbook`, or the folder named. The scene
+//! is that of <https://learnopengl.com/Advanced-Lighting/Shadows/Shadow-Mapping>: a floor, three cubes and a sun.
+//!
+//! ```text
+//! steps.rs            what each step does, and what one sees
+//! scene.rs            floor, cubes and sun
+//! camera.rs           where they are looked at from
+//! mesh.rs             what they are made of
+//! lookup.rs           how the shader asks for visibility: by the library, or by the textbook's mistake
+//! painter.rs          the passes that draw the scene
+//! rays.rs             the scene as rays see it, on the CPU
+//! truth.rs            how far a picture is from what is truly lit
+//! gpu.rs              a device without a window, and pictures from it
+//! scene.wgsl          Blinn-Phong
+//! out_of_range.wgsl   the textbook's mistake
+//! ```
+
+mod camera;
+mod gpu;
+mod lookup;
+mod mesh;
+mod painter;
+mod rays;
+mod scene;
+mod steps;
+mod truth;
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Parser;
+use wgpu_shadows::{DebugView, DirectionalShadow, ShadowCaster};
+
+use camera::Camera;
+use gpu::Gpu;
+use lookup::Lookup;
+use painter::Painter;
+use scene::Scene;
+use steps::{Show, Step};
+use truth::Truth;
+
+/// Draws the steps of the shadow-mapping tutorial, one picture each.
+#[derive(Parser)]
+struct Arguments {
+    /// Folder for the pictures.
+    #[arg(default_value = "target/textbook")]
+    folder: PathBuf,
+}
+
+fn main() -> ExitCode {
+    match run(&Arguments::parse().folder) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("textbook: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(folder: &Path) -> Result<(), Box<dyn Error>> {
+    let gpu = Gpu::new()?;
+    std::fs::create_dir_all(folder)?;
+    let scene = Scene::new(&gpu.device);
+    let mut figures = Vec::new();
+    for step in steps::steps() {
+        let path = folder.join(step.file);
+        figures.push((step.file, draw(&gpu, &scene, &step, &path)?));
+        println!("{}\n    {}", path.display(), step.sentence);
+    }
+    println!(
+        "\nAgainst rays cast in double precision (levels: how many values the visibility takes):"
+    );
+    for (file, figure) in figures {
+        println!("{file:32} {figure}");
+    }
+    Ok(())
+}
+
+/// Draws the picture of `step` and says how far it is from the truth.
+fn draw(gpu: &Gpu, scene: &Scene, step: &Step, path: &Path) -> Result<String, Box<dyn Error>> {
+    let camera = Camera::new(step.viewpoint, painter::SIZE);
+    let meshes = scene.casters(&gpu.device, step.cull)?;
+    let casters: Vec<&dyn ShadowCaster> = meshes.iter().map(|mesh| mesh as _).collect();
+    let mut sun = DirectionalShadow::new(&gpu.device, &step.shadow)?;
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    sun.record(
+        &gpu.device,
+        &mut encoder,
+        &scene.frame(step.region, &camera, &casters),
+    )?;
+
+    let lookup = match step.show {
+        Show::Scene => Lookup::by_the_library(&gpu.device, &sun)?,
+        Show::OutOfRangeMistake => Lookup::by_mistake(&gpu.device, &sun)?,
+        Show::DepthMap => return draw_map(gpu, scene, &sun, encoder, path),
+    };
+    let painted = Painter::new(gpu, scene, &camera).paint(encoder, &lookup)?;
+    painted.picture.save(path)?;
+    let truth = Truth::new(scene, &camera, painter::SIZE);
+    Ok(truth.compare(&painted.visibility).to_string())
+}
+
+/// Draws the map of `sun`, one pixel a texel.
+fn draw_map(
+    gpu: &Gpu,
+    scene: &Scene,
+    sun: &DirectionalShadow,
+    mut encoder: wgpu::CommandEncoder,
+    path: &Path,
+) -> Result<String, Box<dyn Error>> {
+    let format = wgpu::TextureFormat::Rgba8Unorm;
+    let view = sun.views().next().ok_or("nothing casts a shadow")?;
+    let target = gpu.target(format, [view.map_size(); 2], 1);
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("depth map"),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: &target.create_view(&Default::default()),
+            depth_slice: None,
+            resolve_target: None,
+            ops: Default::default(),
+        })],
+        ..Default::default()
+    });
+    let debug_view = DebugView::new(&gpu.device, format)?;
+    debug_view.draw(
+        &gpu.device,
+        &mut pass,
+        sun.source(),
+        wgpu_shadows::DebugPicture::Layer(view.layer()),
+    )?;
+    drop(pass);
+
+    let pixels = gpu.read(encoder, &target)?;
+    let color = image::ColorType::Rgba8;
+    image::save_buffer(path, &pixels, target.width(), target.height(), color)?;
+    let wrong = 100.0 * truth::compare_map(scene, view, &pixels);
+    Ok(format!(
+        "{wrong:6.2} % of the texels are more than one grey level off"
+    ))
+}

@@ -1,0 +1,237 @@
+//! The wgpu side of caster pipelines: layouts, vertex state, depth state.
+
+use std::num::NonZeroU32;
+
+use crate::cast::DEPTH_FORMAT;
+use crate::cast::pipeline::{
+    CasterPipelineDescriptor, CasterVertex, ModelTransform, PositionAttribute,
+};
+use crate::cast::recorder::{FACE_COUNT, VIEW_UNIFORM_BYTES};
+use crate::shader;
+
+/// All that a pipeline with the built-in vertex stage is made of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BuiltIn {
+    pub position: PositionAttribute,
+    pub model: ModelTransform,
+    pub cull: Option<wgpu::Face>,
+    pub front_face: wgpu::FrontFace,
+    pub topology: wgpu::PrimitiveTopology,
+    pub strip_index_format: Option<wgpu::IndexFormat>,
+}
+
+/// One view a pass, for the winding described and for the other.
+pub(crate) fn plain(
+    device: &wgpu::Device,
+    descriptor: &CasterPipelineDescriptor<'_>,
+) -> [wgpu::RenderPipeline; 2] {
+    match descriptor.vertex {
+        CasterVertex::BuiltIn { position, model } => {
+            let source = [shader::CASTER.source, shader::CASTER_BUILTIN.source].concat();
+            built_in(device, descriptor, &source, &position, &model, None)
+        }
+        CasterVertex::Wgsl {
+            source,
+            vertex_entry,
+            fragment_entry,
+            buffers,
+            bind_group_layouts,
+        } => {
+            let source = [shader::CASTER.source, source].concat();
+            let stages = Stages {
+                source: &source,
+                vertex_entry,
+                fragment_entry,
+                buffers,
+                bind_group_layouts,
+                multiview_mask: None,
+            };
+            both_windings(device, descriptor, &stages)
+        }
+    }
+}
+
+/// Six views a pass.
+pub(crate) fn six_views(device: &wgpu::Device, built: &BuiltIn) -> [wgpu::RenderPipeline; 2] {
+    let descriptor = CasterPipelineDescriptor {
+        label: Some("shadow caster, six views"),
+        vertex: CasterVertex::BuiltIn {
+            position: built.position,
+            model: built.model,
+        },
+        cull: built.cull,
+        front_face: built.front_face,
+        topology: built.topology,
+        strip_index_format: built.strip_index_format,
+    };
+    let source = [
+        shader::CASTER_MULTIVIEW.source,
+        shader::CASTER_BUILTIN_MULTIVIEW.source,
+    ]
+    .concat();
+    let mask = NonZeroU32::new((1 << FACE_COUNT) - 1);
+    built_in(
+        device,
+        &descriptor,
+        &source,
+        &built.position,
+        &built.model,
+        mask,
+    )
+}
+
+/// Layout of bind group 0: the view being rendered, chosen by a dynamic offset.
+pub(crate) fn view_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    uniform_layout(device, "shadow caster view", VIEW_UNIFORM_BYTES, true)
+}
+
+/// Layout of bind group 0 where six views are rendered at once.
+pub(crate) fn six_views_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let bytes = VIEW_UNIFORM_BYTES * u64::from(FACE_COUNT);
+    uniform_layout(device, "shadow caster faces", bytes, false)
+}
+
+fn uniform_layout(
+    device: &wgpu::Device,
+    label: &str,
+    bytes: u64,
+    has_dynamic_offset: bool,
+) -> wgpu::BindGroupLayout {
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some(label),
+        entries: &[wgpu::BindGroupLayoutEntry {
+            binding: 0,
+            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+            ty: wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Uniform,
+                has_dynamic_offset,
+                min_binding_size: wgpu::BufferSize::new(bytes),
+            },
+            count: None,
+        }],
+    })
+}
+
+fn built_in(
+    device: &wgpu::Device,
+    descriptor: &CasterPipelineDescriptor<'_>,
+    source: &str,
+    position: &PositionAttribute,
+    model: &ModelTransform,
+    multiview_mask: Option<NonZeroU32>,
+) -> [wgpu::RenderPipeline; 2] {
+    let position_attribute = [wgpu::VertexAttribute {
+        format: position.format,
+        offset: position.offset,
+        shader_location: 0,
+    }];
+    let positions = Some(wgpu::VertexBufferLayout {
+        array_stride: position.array_stride,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &position_attribute,
+    });
+    let mut stages = Stages {
+        source,
+        vertex_entry: "shadow_caster_vertex_identity",
+        fragment_entry: None,
+        buffers: std::slice::from_ref(&positions),
+        bind_group_layouts: &[],
+        multiview_mask,
+    };
+    let ModelTransform::InstanceMatrix {
+        array_stride,
+        offset,
+    } = *model
+    else {
+        return both_windings(device, descriptor, &stages);
+    };
+    let columns = [0, 1, 2, 3].map(|column| wgpu::VertexAttribute {
+        format: wgpu::VertexFormat::Float32x4,
+        offset: offset + 16 * u64::from(column),
+        shader_location: 1 + column,
+    });
+    let matrices = Some(wgpu::VertexBufferLayout {
+        array_stride,
+        step_mode: wgpu::VertexStepMode::Instance,
+        attributes: &columns,
+    });
+    let buffers = [positions.clone(), matrices];
+    stages.vertex_entry = "shadow_caster_vertex_instance";
+    stages.buffers = &buffers;
+    both_windings(device, descriptor, &stages)
+}
+
+/// What differs between the built-in stages and the engine's own.
+struct Stages<'a> {
+    source: &'a str,
+    vertex_entry: &'a str,
+    fragment_entry: Option<&'a str>,
+    buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
+    bind_group_layouts: &'a [Option<&'a wgpu::BindGroupLayout>],
+    multiview_mask: Option<NonZeroU32>,
+}
+
+fn both_windings(
+    device: &wgpu::Device,
+    descriptor: &CasterPipelineDescriptor<'_>,
+    stages: &Stages<'_>,
+) -> [wgpu::RenderPipeline; 2] {
+    let label = descriptor.label.unwrap_or("shadow caster");
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(label),
+        source: wgpu::ShaderSource::Wgsl(stages.source.into()),
+    });
+    let view_layout = match stages.multiview_mask {
+        None => view_layout(device),
+        Some(_) => six_views_layout(device),
+    };
+    let mut groups = vec![Some(&view_layout)];
+    groups.extend_from_slice(stages.bind_group_layouts);
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(label),
+        bind_group_layouts: &groups,
+        immediate_size: 0,
+    });
+    let create = |front_face| {
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(label),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some(stages.vertex_entry),
+                compilation_options: Default::default(),
+                buffers: stages.buffers,
+            },
+            primitive: wgpu::PrimitiveState {
+                topology: descriptor.topology,
+                strip_index_format: descriptor.strip_index_format,
+                front_face,
+                cull_mode: descriptor.cull,
+                ..Default::default()
+            },
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: DEPTH_FORMAT,
+                depth_write_enabled: Some(true),
+                depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
+                stencil: wgpu::StencilState::default(),
+                bias: wgpu::DepthBiasState::default(),
+            }),
+            multisample: wgpu::MultisampleState::default(),
+            fragment: stages.fragment_entry.map(|entry| wgpu::FragmentState {
+                module: &module,
+                entry_point: Some(entry),
+                compilation_options: Default::default(),
+                targets: &[],
+            }),
+            multiview_mask: stages.multiview_mask,
+            cache: None,
+        })
+    };
+    let described = create(descriptor.front_face);
+    let mirrored = match (descriptor.cull, descriptor.front_face) {
+        (None, _) => described.clone(),
+        (Some(_), wgpu::FrontFace::Ccw) => create(wgpu::FrontFace::Cw),
+        (Some(_), wgpu::FrontFace::Cw) => create(wgpu::FrontFace::Ccw),
+    };
+    [described, mirrored]
+}

@@ -1,0 +1,51 @@
+// The classic direction-space filters of point lights: nearest comparisons along directions around the receiver's own.
+//
+// `shadow_direction_grid` is a regular 4x4x4 grid of 64 offsets in a cube; `shadow_direction_star` are the 20 directions to
+// the corners and edges of a cube. Each sample looks along (from light to receiver) + offset, picks its own face, and is
+// compared with the receiver's tangent plane in that direction, clamped so that it lies no farther from the light than the
+// receiver; or, under a manual bias, with the receiver's distance, as the textbook does.
+// Rust twin: src/receive/reference.rs. Requires: view.
+
+// Offset `index` in 0..64, each component one of ±1/4, ±3/4.
+fn shadow_direction_grid(index: u32) -> vec3<f32> {
+    let cell = vec3<u32>(index & 3u, (index >> 2u) & 3u, index >> 4u);
+    return (vec3<f32>(cell) + 0.5) / 2.0 - 1.0;
+}
+
+// Offset `index` in 0..20: eight corners, then four edges in each of three planes.
+fn shadow_direction_star(index: u32) -> vec3<f32> {
+    let signs = vec3<f32>(
+        select(1.0, -1.0, (index & 1u) != 0u),
+        select(1.0, -1.0, (index & 2u) != 0u),
+        select(1.0, -1.0, (index & 4u) != 0u),
+    );
+    if index < 8u {
+        return signs;
+    }
+    switch (index - 8u) >> 2u {
+        case 0u: { return vec3<f32>(signs.x, signs.y, 0.0); }
+        case 1u: { return vec3<f32>(signs.x, 0.0, signs.y); }
+        default: { return vec3<f32>(0.0, signs.x, signs.y); }
+    }
+}
+
+// Radius of the samples in world units: as given close to the viewer, and wider in proportion to the distance from it, by
+// the share of the light's range, as the textbook has it. `viewer.w` is 0 where no viewer is known.
+fn shadow_direction_radius(view: ShadowView, position: vec3<f32>) -> f32 {
+    let far = distance(position, view.viewer.xyz) / view.range;
+    return view.sample_radius * (1.0 + view.viewer.w * far);
+}
+
+// Where the sample along `from_light + offset` meets the receiver's plane; no farther from the light than the receiver.
+fn shadow_direction_on_plane(from_light: vec3<f32>, normal: vec3<f32>, offset: vec3<f32>) -> vec3<f32> {
+    let direction = normalize(from_light + offset);
+    let reach = length(from_light);
+    let hit = dot(normal, from_light) / dot(normal, direction);
+    // A plane seen edge on, or from behind: the receiver's own distance.
+    return direction * select(reach, min(hit, reach), hit > 0.0);
+}
+
+// The sample at the receiver's own distance.
+fn shadow_direction_on_sphere(from_light: vec3<f32>, offset: vec3<f32>) -> vec3<f32> {
+    return normalize(from_light + offset) * length(from_light);
+}
