@@ -50,7 +50,7 @@ fn main() -> ExitCode {
     let path = argument.unwrap_or_else(|| "target/quickstart.png".into());
     match Engine::new().and_then(|engine| draw(&engine, path.as_ref())) {
         Ok(()) => {
-            println!("{}", path.display());
+            println!("wrote {}", path.display());
             ExitCode::SUCCESS
         }
         Err(error) => {
@@ -139,7 +139,7 @@ impl Engine {
         let options = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
         let adapter = wgpu::Instance::new(options).request_adapter(&Default::default());
         let adapter = pollster::block_on(adapter).map_err(|_| {
-            "no graphics adapter; one in software comes with `apt-get install mesa-vulkan-drivers` (.ci/install-lavapipe)"
+            "no graphics adapter; one in software comes with `apt-get install mesa-vulkan-drivers` (.ci/with-vulkan)"
         })?;
         let (device, queue) = pollster::block_on(adapter.request_device(&Default::default()))?;
         let cube = |center: [f32; 3], half: [f32; 3]| {

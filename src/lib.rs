@@ -1,4 +1,41 @@
-//! Shadow mapping for any wgpu engine.
+#![doc = include_str!("../README.md")]
+//!
+//! # A frame
+//!
+//! ```text
+//! light + camera + caster bounds
+//!    │  fit        pure mathematics in f64, no wgpu, returns values
+//!    ▼
+//! ShadowView[]     one depth render each: matrices, texel size, depth range
+//!    │  cast       culls casters per view, skips views that need nothing, records depth passes
+//!    ▼
+//! depth texture    layers: cascades of a sun, the map of a spot, six faces of a point light
+//!    │  receive    bind group and WGSL: your fragment shader calls shadow_NAME(position, normal)
+//!    ▼
+//! your picture     and a ShadowReport
+//! ```
+//!
+//! Everything is recorded into your encoder, in order: uniforms first, then depth passes. The encoder must be submitted before
+//! what asks for the shadows; one that is dropped takes its passes with it, and then the light's `invalidate` must be called.
+//!
+//! # Spaces
+//!
+//! | space | what | type |
+//! |---|---|---|
+//! | world | absolute, metres or any unit | f64 |
+//! | render | world minus your `origin` (zero by default): what your shaders see | f32 |
+//! | light | x right, y up, looking along -z, same unit | f64, inside |
+//! | clip, ndc | WebGPU's: z in \[0, 1\], y up; depth is reversed: near 1, far 0 | f32 |
+//! | texel | origin top left, centres at halves | f32 |
+//!
+//! Matrices are named `target_from_source`; scalars carry their unit.
+//!
+//! # Bias
+//!
+//! Ndc depth is affine in map coordinates over a plane, for orthographic and perspective views alike. With [`Bias::Auto`] the
+//! shader carries the receiver's tangent plane into texel space, gathers raw depths and compares each with the plane's own depth
+//! at that texel, clamped so that it never lies farther from the light than the receiver. What is left is rounding: see
+//! [`Bias`]. The normal must be the geometric one, of unit length; `shadow_geometric_normal(position)` makes it from derivatives.
 
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
@@ -28,7 +65,7 @@ pub use directional::{
     Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
 };
 pub use error::{BindingsError, CasterError, DebugViewError, ShadowError};
-pub use fit::{CameraView, CascadeSplit, LightAxes, ShadowView};
+pub use fit::{CameraView, CascadeSplit, ShadowView};
 pub use omni::{OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor};
 pub use receive::{
     Bias, Filter, ShadowBindings, ShadowBindingsDescriptor, ShadowSource, ShadowViewUniform,

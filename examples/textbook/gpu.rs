@@ -14,7 +14,7 @@ impl Gpu {
         let options = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
         let adapter = wgpu::Instance::new(options).request_adapter(&Default::default());
         let adapter = pollster::block_on(adapter).map_err(|_| {
-            "no graphics adapter; one in software comes with `apt-get install mesa-vulkan-drivers` (.ci/install-lavapipe)"
+            "no graphics adapter; one in software comes with `apt-get install mesa-vulkan-drivers` (.ci/with-vulkan)"
         })?;
         let (device, queue) = pollster::block_on(adapter.request_device(&Default::default()))?;
         Ok(Self { device, queue })

@@ -166,18 +166,11 @@ impl Recorder {
         for draws in views.iter_mut() {
             draws.drawn = self.contents[draws.view.layer() as usize].replace(draws, casters);
         }
-        if let (Some(cube), Some(first)) = (&mut self.cube, views.first())
-            && cube.is_worth_it(device, views, casters)
-        {
-            {
-                cube.draw(
-                    device,
-                    encoder,
-                    &self.label,
-                    map.array_view(),
-                    first,
-                    casters,
-                );
+        if let (Some(cube), [first, ..]) = (&mut self.cube, &*views) {
+            let one_pass = cube.is_worth_it(device, views, casters);
+            if one_pass {
+                let faces = map.array_view();
+                cube.draw(device, encoder, &self.label, faces, first, casters);
                 return 1;
             }
         }
