@@ -23,6 +23,11 @@ pub(crate) fn in_range(
     }
 }
 
+/// Infinity allowed.
+pub(crate) fn above_zero(field: &'static str, value: f32) -> Result<(), ShadowError> {
+    in_range(field, "above 0 (infinity allowed)", value > 0.0, value)
+}
+
 pub(crate) fn finite_vector(field: &'static str, value: DVec3) -> Result<(), ShadowError> {
     if value.is_finite() {
         Ok(())

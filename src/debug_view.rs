@@ -11,13 +11,12 @@ use crate::shader;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 struct DebugUniform {
-    index: u32,
     local: u32,
-    padding: [u32; 2],
+    padding: [u32; 3],
 }
 
-/// `SHADOW_DEBUG_VIEWS` of the shader.
-const MOST_VIEWS: usize = 8;
+/// Views that a picture may need: the faces of a cube.
+const FACES: u32 = 6;
 
 /// What of a light to draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,6 +27,8 @@ pub enum DebugPicture {
     /// The six faces of a point light as an unfolded cross, four cells wide and three high: -x, -z, +x, +z in the middle row,
     /// +y above and -y below -z.
     Cross,
+    /// The same of one light of a pool, by the index of its slot.
+    PoolCross(u32),
 }
 
 /// Draws depth maps as grey levels: black at the light, white at the far plane or the end of the light's reach and where nothing
@@ -89,25 +90,30 @@ impl DebugView {
     ) -> Result<(), DebugViewError> {
         let receiver = source.receiver;
         let layers = receiver.view_count;
-        let (pipeline, index) = match picture {
-            DebugPicture::Layer(layer) if layer >= layers => {
-                return Err(DebugViewError::Layer { layer, layers });
-            }
-            DebugPicture::Cross if receiver.selection != Selection::CubeFace => {
-                return Err(DebugViewError::NotACube { layers });
-            }
+        let (pipeline, first_layer) = match picture {
             DebugPicture::Layer(layer) => (&self.layer, layer),
             DebugPicture::Cross => (&self.cross, 0),
+            DebugPicture::PoolCross(index) => (&self.cross, index.saturating_mul(FACES)),
         };
-        let mut views = [ShadowViewUniform::zeroed(); MOST_VIEWS];
-        for (view, uniform) in views.iter_mut().zip(receiver.uniforms) {
+        let is_cross = !matches!(picture, DebugPicture::Layer(_));
+        if is_cross && receiver.selection != Selection::CubeFace {
+            return Err(DebugViewError::NotACube { layers });
+        }
+        if first_layer >= layers {
+            return Err(DebugViewError::Layer {
+                layer: first_layer,
+                layers,
+            });
+        }
+        let mut views = [ShadowViewUniform::zeroed(); FACES as usize];
+        let shown = &receiver.uniforms[first_layer as usize..];
+        for (view, uniform) in views.iter_mut().zip(shown) {
             *view = *uniform;
         }
-        let local = receiver.uniforms.iter().any(|view| view.light[3] > 0.0);
+        let local = shown.iter().any(|view| view.light[3] > 0.0);
         let header = DebugUniform {
-            index,
             local: u32::from(local),
-            padding: [0; 2],
+            padding: [0; 3],
         };
         let upload = |contents: &[u8]| {
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
@@ -162,7 +168,7 @@ fn create_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
         label: Some("shadow debug view"),
         entries: &[
             uniform(0, size_of::<DebugUniform>()),
-            uniform(1, MOST_VIEWS * size_of::<ShadowViewUniform>()),
+            uniform(1, FACES as usize * size_of::<ShadowViewUniform>()),
             wgpu::BindGroupLayoutEntry {
                 binding: 2,
                 visibility: wgpu::ShaderStages::FRAGMENT,

@@ -7,7 +7,7 @@ use crate::check;
 use crate::fit::{
     CasterBounds, DirectionalFit, FitInput, FitLimits, LightAxes, MAX_CASCADES, Region,
 };
-use crate::light_maps::{LightMaps, LightMapsDescriptor, MapsFrame, light_maps_getters};
+use crate::light_maps::{LayerBase, LightMaps, LightMapsDescriptor, MapsFrame, light_maps_getters};
 use crate::receive::{Sampling, Selection};
 use crate::report::ShadowReport;
 use crate::{Aabb, Bias, CameraView, CascadeSplit, Filter, ShadowError, ShadowView};
@@ -129,6 +129,8 @@ impl DirectionalShadow {
                 layers: descriptor.cascades,
                 sampling,
                 selection: Selection::FirstInside,
+                views_per_light: descriptor.cascades,
+                indexed: false,
             },
         )?;
         Ok(Self {
@@ -184,8 +186,9 @@ impl DirectionalShadow {
         let views = self.cull(&fit, &axes, frame.origin)?;
         let maps_frame = MapsFrame {
             views,
-            anchor_render: Vec3::ZERO,
-            reach_world: f64::INFINITY,
+            layers: (0..self.limits.cascades as u32)
+                .map(LayerBase::directional)
+                .collect(),
             viewer_render: None,
             casters: frame.casters,
         };
@@ -212,11 +215,8 @@ impl DirectionalShadow {
                     .filter(|(_, caster)| caster.can_shadow && window.holds_part_of(&caster.light))
                     .map(|(index, _)| index),
             );
-            views.push(ViewDraws {
-                view: ShadowView::orthographic(axes, window, origin, layer as u32).checked()?,
-                casters,
-                drawn: false,
-            });
+            let view = ShadowView::orthographic(axes, window, origin, layer as u32).checked()?;
+            views.push(ViewDraws::new(view, casters));
         }
         Ok(views)
     }

@@ -72,6 +72,32 @@ pub enum ShadowError {
         /// Its distance from the render origin in world units.
         distance_world: f64,
     },
+    /// A pool has no free slot.
+    #[error(
+        "the pool is full: raise PoolDescriptor::capacity (now {capacity}) or remove a light first"
+    )]
+    PoolFull {
+        /// Slots of the pool.
+        capacity: u32,
+    },
+    /// A slot that was given back, or that belongs to another pool.
+    #[error(
+        "{field} must be a slot that this pool has given out and not taken back, got slot {index}"
+    )]
+    UnknownSlot {
+        /// Path of the field.
+        field: &'static str,
+        /// Index of the slot.
+        index: u32,
+    },
+    /// One slot twice in a frame.
+    #[error("{field} must name each slot at most once, got slot {index} twice")]
+    DuplicateSlot {
+        /// Path of the field.
+        field: &'static str,
+        /// Index of the slot.
+        index: u32,
+    },
     /// The device could not hold the depth texture.
     #[error("{field} needs {bytes} bytes of device memory, and the device is out of memory")]
     OutOfMemory {

@@ -48,8 +48,9 @@ mod directional;
 mod error;
 mod fit;
 mod light_maps;
-mod local_light;
+mod local_lights;
 mod omni;
+mod pool;
 mod receive;
 mod report;
 pub mod shader;
@@ -67,6 +68,7 @@ pub use directional::{
 pub use error::{BindingsError, CasterError, DebugViewError, ShadowError};
 pub use fit::{CameraView, CascadeSplit, ShadowView};
 pub use omni::{OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor};
+pub use pool::{OmniShadowPool, PoolDescriptor, PoolFrame, PoolLight, ShadowSlot, SpotShadowPool};
 pub use receive::{
     Bias, Filter, ShadowBindings, ShadowBindingsDescriptor, ShadowSource, ShadowViewUniform,
     reference,

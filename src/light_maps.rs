@@ -18,6 +18,8 @@ pub(crate) struct LightMaps {
     uniforms: UploadBuffer,
     sampling: Sampling,
     selection: Selection,
+    views_per_light: u32,
+    indexed: bool,
     views: Vec<ViewDraws>,
     uniform_values: Vec<ShadowViewUniform>,
     report: ShadowReport,
@@ -34,16 +36,37 @@ pub(crate) struct LightMapsDescriptor<'a> {
     pub layers: u32,
     pub sampling: Sampling,
     pub selection: Selection,
+    pub views_per_light: u32,
+    /// Lights are asked by index.
+    pub indexed: bool,
+}
+
+/// A layer that a light of this frame has, and what its uniform says where nothing casts into it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LayerBase {
+    pub layer: u32,
+    /// The place of a local light.
+    pub anchor_render: Vec3,
+    /// World distance beyond which the light does not reach; infinite for a directional one.
+    pub reach_world: f64,
+}
+
+impl LayerBase {
+    pub fn directional(layer: u32) -> Self {
+        Self {
+            layer,
+            anchor_render: Vec3::ZERO,
+            reach_world: f64::INFINITY,
+        }
+    }
 }
 
 /// What a frame brings to the maps.
 pub(crate) struct MapsFrame<'a> {
+    /// The layers of this frame's lights; all others are lit and not reported.
+    pub layers: Vec<LayerBase>,
     /// The views that something casts into; the other layers are lit.
     pub views: Vec<ViewDraws>,
-    /// The place of a local light, for the layers without a view.
-    pub anchor_render: Vec3,
-    /// World distance beyond which the light does not reach; infinite for a directional one.
-    pub reach_world: f64,
     /// The camera, if there is one.
     pub viewer_render: Option<Vec3>,
     pub casters: &'a [&'a dyn ShadowCaster],
@@ -72,7 +95,7 @@ impl LightMaps {
                 device,
                 label,
                 layers,
-                descriptor.selection == Selection::CubeFace,
+                descriptor.selection == Selection::CubeFace && !descriptor.indexed,
             )?,
             uniforms: UploadBuffer::new(
                 device,
@@ -81,6 +104,8 @@ impl LightMaps {
             )?,
             sampling: descriptor.sampling,
             selection: descriptor.selection,
+            views_per_light: descriptor.views_per_light,
+            indexed: descriptor.indexed,
             views: Vec::new(),
             uniform_values: vec![empty_view_uniform(0, Vec3::ZERO); layers as usize],
             report,
@@ -129,6 +154,8 @@ impl LightMaps {
                 uniforms: &self.uniform_values,
                 sampling: self.sampling,
                 selection: self.selection,
+                views_per_light: self.views_per_light,
+                indexed: self.indexed,
             },
         }
     }
@@ -153,30 +180,12 @@ impl LightMaps {
         frame: MapsFrame<'_>,
     ) -> Result<&ShadowReport, ShadowError> {
         let MapsFrame {
+            layers,
             mut views,
-            anchor_render,
-            reach_world,
             viewer_render,
             casters,
         } = frame;
-        let range = endless_range(reach_world);
-        let sample_radius = self.sampling.filter.radius_world();
-        let viewer = viewer_render.map_or([0.0; 4], |viewer| viewer.extend(1.0).to_array());
-        let uniform_values: Vec<_> = (0..self.map.layers())
-            .map(|layer| {
-                let draws = views.iter().find(|draws| draws.view.layer() == layer);
-                let uniform = draws.map_or_else(
-                    || empty_view_uniform(layer, anchor_render),
-                    |draws| view_uniform(&draws.view, &self.sampling),
-                );
-                ShadowViewUniform {
-                    viewer,
-                    range,
-                    sample_radius,
-                    ..uniform
-                }
-            })
-            .collect();
+        let uniform_values = self.uniforms_of(&layers, &views, viewer_render);
         let upload = self
             .uniforms
             .prepare(device, bytemuck::cast_slice(&uniform_values))?;
@@ -188,34 +197,77 @@ impl LightMaps {
             .record(device, encoder, &self.map, prepared, &mut views, casters);
         self.uniform_values = uniform_values;
         self.spare = std::mem::replace(&mut self.views, views);
-        self.fill_report(casters.len() as u32);
+        self.fill_report(&layers, casters.len() as u32);
         Ok(&self.report)
     }
 
-    fn fill_report(&mut self, caster_count: u32) {
-        self.report.views.clear();
-        for layer in 0..self.map.layers() {
-            let draws = self.views.iter().find(|draws| draws.view.layer() == layer);
-            self.report.views.push(match draws {
-                None => ViewReport::empty(layer, caster_count),
-                Some(draws) => ViewReport {
-                    layer,
-                    status: if draws.drawn {
-                        ViewStatus::Drawn
-                    } else {
-                        ViewStatus::Kept
-                    },
-                    casters: draws.casters.len() as u32,
-                    culled: caster_count - draws.casters.len() as u32,
-                    texel_size_world: draws.view.texel_size_world(),
-                    depth_range_world: draws.view.depth_range_world(),
-                    worst_gap_world: self
-                        .sampling
-                        .bias
-                        .worst_gap_world(self.sampling.filter, &draws.view),
-                },
-            });
+    /// One uniform per layer of the texture.
+    fn uniforms_of(
+        &self,
+        layers: &[LayerBase],
+        views: &[ViewDraws],
+        viewer_render: Option<Vec3>,
+    ) -> Vec<ShadowViewUniform> {
+        let mut uniforms: Vec<_> = (0..self.map.layers())
+            .map(|layer| empty_view_uniform(layer, Vec3::ZERO))
+            .collect();
+        for base in layers {
+            uniforms[base.layer as usize] = ShadowViewUniform {
+                range: endless_range(base.reach_world),
+                ..empty_view_uniform(base.layer, base.anchor_render)
+            };
         }
+        for draws in views {
+            uniforms[draws.view.layer() as usize] = view_uniform(&draws.view, &self.sampling);
+        }
+        for uniform in &mut uniforms {
+            uniform.sample_radius = self.sampling.filter.radius_world();
+            uniform.viewer = viewer_render.map_or([0.0; 4], |viewer| viewer.extend(1.0).to_array());
+        }
+        uniforms
+    }
+
+    fn fill_report(&mut self, layers: &[LayerBase], caster_count: u32) {
+        let mut by_layer = vec![None; self.map.layers() as usize];
+        for draws in &self.views {
+            by_layer[draws.view.layer() as usize] = Some(draws);
+        }
+        let reports = layers
+            .iter()
+            .map(|base| match by_layer[base.layer as usize] {
+                None => ViewReport::empty(base.layer, caster_count),
+                Some(draws) => view_report(draws, &self.sampling, caster_count),
+            });
+        self.report.views.clear();
+        self.report.views.extend(reports);
+    }
+
+    /// Would `draws` need a pass?
+    pub fn needs(&self, draws: &ViewDraws, casters: &[&dyn ShadowCaster]) -> bool {
+        self.recorder.needs(draws, casters)
+    }
+
+    /// The views that the last frame left in `layers`.
+    pub fn views_in(&self, layers: std::ops::Range<u32>) -> impl Iterator<Item = &ViewDraws> {
+        self.views
+            .iter()
+            .filter(move |draws| layers.contains(&draws.view.layer()))
+    }
+}
+
+fn view_report(draws: &ViewDraws, sampling: &Sampling, caster_count: u32) -> ViewReport {
+    ViewReport {
+        layer: draws.view.layer(),
+        status: match draws {
+            ViewDraws { deferred: true, .. } => ViewStatus::Deferred,
+            ViewDraws { drawn: true, .. } => ViewStatus::Drawn,
+            _ => ViewStatus::Kept,
+        },
+        casters: draws.casters.len() as u32,
+        culled: caster_count - draws.casters.len() as u32,
+        texel_size_world: draws.view.texel_size_world(),
+        depth_range_world: draws.view.depth_range_world(),
+        worst_gap_world: sampling.bias.worst_gap_world(sampling.filter, &draws.view),
     }
 }
 

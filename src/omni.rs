@@ -6,7 +6,7 @@ use crate::cast::ShadowCaster;
 use crate::check;
 use crate::fit::LightAxes;
 use crate::light_maps::{LightMaps, LightMapsDescriptor, light_maps_getters};
-use crate::local_light::{LocalFields, LocalFrame, LocalViews};
+use crate::local_lights::{LocalFields, LocalFrame, LocalLights, LocalPlacement};
 use crate::receive::{Sampling, Selection};
 use crate::{Aabb, Bias, CameraView, Filter, ShadowError, ShadowReport};
 
@@ -64,7 +64,7 @@ pub struct OmniFrame<'a> {
 #[derive(Debug)]
 pub struct OmniShadow {
     maps: LightMaps,
-    views: LocalViews,
+    lights: LocalLights,
 }
 
 const FIELDS: LocalFields = LocalFields {
@@ -103,11 +103,13 @@ impl OmniShadow {
                     bias: descriptor.bias,
                 },
                 selection: Selection::CubeFace,
+                views_per_light: 6,
+                indexed: false,
             },
         )?;
         Ok(Self {
             maps,
-            views: LocalViews::default(),
+            lights: LocalLights::new(1),
         })
     }
 
@@ -126,23 +128,36 @@ impl OmniShadow {
         encoder: &mut wgpu::CommandEncoder,
         frame: &OmniFrame<'_>,
     ) -> Result<&ShadowReport, ShadowError> {
-        self.views.record(
+        self.lights.record(
             &mut self.maps,
             device,
             encoder,
             &LocalFrame {
                 origin: frame.origin,
-                position_world: frame.light.position_world,
-                range: frame.light.range,
-                views: &cube_faces(),
-                tangent: 1.0,
-                cone_cosine: -2.0,
+                lights: &[frame.light.placement(0, 1.0)],
                 camera: frame.camera.as_ref(),
                 casters: frame.casters,
                 receivers: frame.receivers,
+                max_views: None,
                 fields: &FIELDS,
             },
         )
+    }
+}
+
+impl OmniLight {
+    /// The light in a slot of its maps.
+    pub(crate) fn placement(&self, slot: u32, importance: f32) -> LocalPlacement {
+        LocalPlacement {
+            slot,
+            position_world: self.position_world,
+            range: self.range,
+            axes: cube_faces(),
+            view_count: 6,
+            tangent: 1.0,
+            cone_cosine: -2.0,
+            importance,
+        }
     }
 }
 

@@ -10,6 +10,8 @@ pub enum ViewStatus {
     Drawn,
     /// Nothing in it had changed; its map was kept.
     Kept,
+    /// It needed drawing and the frame's budget did not reach it: it shows its last map.
+    Deferred,
     /// Nothing casts onto anything that it sees; there is no map, and all is lit.
     Empty,
 }

@@ -4,9 +4,9 @@ use glam::{DVec3, Vec3};
 
 use crate::cast::ShadowCaster;
 use crate::check;
-use crate::fit::LightAxes;
+use crate::fit::{LightAxes, MAX_LOCAL_VIEWS};
 use crate::light_maps::{LightMaps, LightMapsDescriptor, light_maps_getters};
-use crate::local_light::{LocalFields, LocalFrame, LocalViews};
+use crate::local_lights::{LocalFields, LocalFrame, LocalLights, LocalPlacement};
 use crate::receive::{Sampling, Selection};
 use crate::{Aabb, Bias, CameraView, Filter, ShadowError, ShadowReport};
 
@@ -74,7 +74,7 @@ pub struct SpotFrame<'a> {
 #[derive(Debug)]
 pub struct SpotShadow {
     maps: LightMaps,
-    views: LocalViews,
+    lights: LocalLights,
 }
 
 const FIELDS: LocalFields = LocalFields {
@@ -113,11 +113,13 @@ impl SpotShadow {
                     bias: descriptor.bias,
                 },
                 selection: Selection::FirstInside,
+                views_per_light: 1,
+                indexed: false,
             },
         )?;
         Ok(Self {
             maps,
-            views: LocalViews::default(),
+            lights: LocalLights::new(1),
         })
     }
 
@@ -135,33 +137,58 @@ impl SpotShadow {
         encoder: &mut wgpu::CommandEncoder,
         frame: &SpotFrame<'_>,
     ) -> Result<&ShadowReport, ShadowError> {
-        let direction = frame.light.direction.as_dvec3();
-        check::direction("SpotFrame::light.direction", direction)?;
-        let outer_angle = frame.light.outer_angle_radians;
-        check::in_range(
+        let light = frame.light.placement(
+            0,
+            1.0,
+            "SpotFrame::light.direction",
             "SpotFrame::light.outer_angle_radians",
-            "above 0 and below π/2",
-            outer_angle > 0.0 && outer_angle < std::f32::consts::FRAC_PI_2,
-            outer_angle,
         )?;
-        let outer_angle = f64::from(outer_angle);
-        self.views.record(
+        self.lights.record(
             &mut self.maps,
             device,
             encoder,
             &LocalFrame {
                 origin: frame.origin,
-                position_world: frame.light.position_world,
-                range: frame.light.range,
-                views: &[LightAxes::new(direction, DVec3::Y)],
-                tangent: outer_angle.tan(),
-                cone_cosine: outer_angle.cos(),
+                lights: &[light],
                 camera: frame.camera.as_ref(),
                 casters: frame.casters,
                 receivers: frame.receivers,
+                max_views: None,
                 fields: &FIELDS,
             },
         )
+    }
+}
+
+impl SpotLight {
+    /// The light in a slot of its maps, if its direction and angle are sound.
+    pub(crate) fn placement(
+        &self,
+        slot: u32,
+        importance: f32,
+        direction_field: &'static str,
+        angle_field: &'static str,
+    ) -> Result<LocalPlacement, ShadowError> {
+        let direction = self.direction.as_dvec3();
+        check::direction(direction_field, direction)?;
+        check::in_range(
+            angle_field,
+            "above 0 and below π/2",
+            self.outer_angle_radians > 0.0
+                && self.outer_angle_radians < std::f32::consts::FRAC_PI_2,
+            self.outer_angle_radians,
+        )?;
+        let outer_angle = f64::from(self.outer_angle_radians);
+        Ok(LocalPlacement {
+            slot,
+            position_world: self.position_world,
+            range: self.range,
+            axes: [LightAxes::new(direction, DVec3::Y); MAX_LOCAL_VIEWS],
+            view_count: 1,
+            tangent: outer_angle.tan(),
+            cone_cosine: outer_angle.cos(),
+            importance,
+        })
     }
 }
 

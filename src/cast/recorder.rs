@@ -28,8 +28,27 @@ pub(crate) const VIEW_UNIFORM_BYTES: u64 = size_of::<CasterViewUniform>() as u64
 pub(crate) struct ViewDraws {
     pub view: ShadowView,
     pub casters: Vec<u32>,
+    /// The layer keeps what it holds, whatever has changed.
+    pub deferred: bool,
     /// Set by [`Recorder::record`]: false where the layer held this picture already.
     pub drawn: bool,
+}
+
+impl ViewDraws {
+    pub fn new(view: ShadowView, casters: Vec<u32>) -> Self {
+        Self {
+            view,
+            casters,
+            deferred: false,
+            drawn: false,
+        }
+    }
+
+    fn revisions(&self, casters: &[&dyn ShadowCaster]) -> impl Iterator<Item = Revision> {
+        self.casters
+            .iter()
+            .map(|&index| casters[index as usize].revision())
+    }
 }
 
 /// What a layer of the map holds.
@@ -41,21 +60,22 @@ struct Content {
 }
 
 impl Content {
+    /// Is it what `draws` would put there?
+    fn holds(&self, draws: &ViewDraws, casters: &[&dyn ShadowCaster]) -> bool {
+        self.placement == Some(*draws.view.placement())
+            && self.revisions.iter().all(Revision::is_stable)
+            && self.revisions.iter().copied().eq(draws.revisions(casters))
+    }
+
     /// Takes on what `draws` will put there; false where the layer holds it already.
     fn replace(&mut self, draws: &ViewDraws, casters: &[&dyn ShadowCaster]) -> bool {
-        let revisions = draws
-            .casters
-            .iter()
-            .map(|&index| casters[index as usize].revision());
-        let held = self.placement == Some(*draws.view.placement())
-            && self.revisions.iter().all(Revision::is_stable)
-            && self.revisions.iter().copied().eq(revisions.clone());
-        if !held {
-            self.placement = Some(*draws.view.placement());
-            self.revisions.clear();
-            self.revisions.extend(revisions);
+        if self.holds(draws, casters) {
+            return false;
         }
-        !held
+        self.placement = Some(*draws.view.placement());
+        self.revisions.clear();
+        self.revisions.extend(draws.revisions(casters));
+        true
     }
 }
 
@@ -128,6 +148,11 @@ impl Recorder {
         })
     }
 
+    /// Would `draws` need a pass?
+    pub fn needs(&self, draws: &ViewDraws, casters: &[&dyn ShadowCaster]) -> bool {
+        !self.contents[draws.view.layer() as usize].holds(draws, casters)
+    }
+
     /// Stages the uniforms of `views`.
     pub fn prepare(
         &self,
@@ -164,7 +189,8 @@ impl Recorder {
             cube.commit(encoder, prepared.faces);
         }
         for draws in views.iter_mut() {
-            draws.drawn = self.contents[draws.view.layer() as usize].replace(draws, casters);
+            let content = &mut self.contents[draws.view.layer() as usize];
+            draws.drawn = !draws.deferred && content.replace(draws, casters);
         }
         if let (Some(cube), [first, ..]) = (&mut self.cube, &*views) {
             let one_pass = cube.is_worth_it(device, views, casters);

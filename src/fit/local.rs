@@ -32,7 +32,7 @@ pub(crate) struct LocalInput<'a> {
     /// The same for casters: wider by what a kernel at the border reaches.
     pub caster_tangent: f64,
     /// Limits receivers to what a camera sees.
-    pub camera: Option<CameraFrustum>,
+    pub camera: Option<&'a CameraFrustum>,
     /// Bounds of casters, which receive too.
     pub casters: &'a [Aabb],
     /// Bounds of surfaces that only receive.
@@ -86,7 +86,7 @@ impl LocalFit {
                 |tangent: f64| view.region(DVec2::splat(-tangent), DVec2::splat(tangent), nearest);
             let field = square(input.caster_tangent);
             let mut seen = square(input.receiver_tangent);
-            if let Some(camera) = &input.camera {
+            if let Some(camera) = input.camera {
                 camera
                     .planes
                     .as_slice()
@@ -224,7 +224,7 @@ fn intersection(a: &Aabb, b: &Aabb) -> Aabb {
 /// Bounds of the receivers that the light reaches and the camera, if any, sees.
 fn visible_bounds(input: &LocalInput<'_>, within: &Aabb) -> (DVec3, DVec3) {
     let all = HalfSpaces::default();
-    let seen = input.camera.as_ref().map_or(&all, |camera| &camera.planes);
+    let seen = input.camera.map_or(&all, |camera| &camera.planes);
     let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for bounds in input.casters.iter().chain(input.receivers) {
         seen.visit_vertices(&intersection(bounds, within), |vertex| {

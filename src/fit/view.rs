@@ -123,6 +123,27 @@ impl ShadowView {
         }
     }
 
+    /// The same view of the same world, for a render space that begins at `origin`.
+    pub(crate) fn rebased(&self, origin: DVec3) -> Self {
+        match &self.placement {
+            ViewPlacement::Orthographic { axes, window } => {
+                Self::orthographic(axes, window, origin, self.layer)
+            }
+            ViewPlacement::Perspective {
+                position_world,
+                reach,
+                ..
+            } => {
+                let anchor_render = (*position_world - origin).as_vec3();
+                Self {
+                    anchor_render,
+                    render_reach: f64::from(anchor_render.abs().max_element()) + reach,
+                    ..*self
+                }
+            }
+        }
+    }
+
     /// The view, if its matrices and its place can be expressed in f32.
     pub(crate) fn checked(self) -> Result<Self, ShadowError> {
         // The square must fit as well: matrices hold reciprocals and products of these.

@@ -1,10 +1,8 @@
 //! One bind group for a set of lights, and the WGSL for exactly that set.
 
-use std::fmt::Write;
-
 use crate::error::BindingsError;
 use crate::receive::filter::FilterSampler;
-use crate::receive::{Bias, Sampling, ShadowViewUniform};
+use crate::receive::{Sampling, ShadowViewUniform, emit};
 use crate::shader;
 
 /// What a light gives its receivers: its map, its uniforms, and how to look them up.
@@ -24,6 +22,9 @@ pub(crate) struct Receiver<'a> {
     pub uniforms: &'a [ShadowViewUniform],
     pub sampling: Sampling,
     pub selection: Selection,
+    pub views_per_light: u32,
+    /// A pool: the lights are asked by index.
+    pub indexed: bool,
 }
 
 /// How a place chooses among a light's views; everything after the choice is the same for all lights.
@@ -44,7 +45,8 @@ pub struct ShadowBindingsDescriptor<'a> {
     pub group: u32,
     /// Stages that call the functions. Default `FRAGMENT`; add `COMPUTE` for volumetric light.
     pub visibility: wgpu::ShaderStages,
-    /// The lights by name. A light named `sun` is asked through `shadow_sun(position, normal)`.
+    /// The lights by name. A light named `sun` is asked through `shadow_sun(position, normal)`, a pool named `lamps` through
+    /// `shadow_lamps(index, position, normal)` with the index of the light's slot.
     pub lights: &'a [(&'a str, ShadowSource<'a>)],
 }
 
@@ -61,7 +63,8 @@ impl Default for ShadowBindingsDescriptor<'_> {
 
 /// A bind group with the maps of a set of lights, and the WGSL that asks them.
 ///
-/// The WGSL has one function per light, `shadow_NAME(position: vec3<f32>, normal: vec3<f32>) -> f32`: visibility in [0, 1] of
+/// The WGSL has one function per light, `shadow_NAME(position: vec3<f32>, normal: vec3<f32>) -> f32` (for pools
+/// `shadow_NAME(index: u32, position: vec3<f32>, normal: vec3<f32>) -> f32`): visibility in [0, 1] of
 /// the light from `position` (render space) on a surface with geometric normal `normal` (unit length, on the side that is
 /// shaded); and `shadow_geometric_normal(position)`. Where the map says nothing, beyond its sides or its far plane, it is 1.
 /// The variables `shadow_map_NAME` and `shadow_views_NAME` are the light's own texture and `array<ShadowView, N>`, for engines
@@ -92,7 +95,7 @@ impl ShadowBindings {
             layout,
             bind_group,
             group: descriptor.group,
-            wgsl: emit(descriptor, &samplers)?,
+            wgsl: emit::wgsl(descriptor, &samplers)?,
         })
     }
 
@@ -205,7 +208,7 @@ fn check_limits(
 }
 
 /// Bindings are numbered: samplers first, then uniforms and map of each light.
-fn views_binding(samplers: &[FilterSampler], light: usize) -> u32 {
+pub(crate) fn views_binding(samplers: &[FilterSampler], light: usize) -> u32 {
     (samplers.len() + 2 * light) as u32
 }
 
@@ -308,119 +311,4 @@ fn create_sampler(device: &wgpu::Device, sampler: FilterSampler) -> wgpu::Sample
         compare: comparison.then_some(wgpu::CompareFunction::GreaterEqual),
         ..Default::default()
     })
-}
-
-/// The modules in use, the group's number, the bindings, and one function per light.
-fn emit(
-    descriptor: &ShadowBindingsDescriptor<'_>,
-    samplers: &[FilterSampler],
-) -> Result<String, BindingsError> {
-    let mut modules = vec!["normal"];
-    for (_, source) in descriptor.lights {
-        let sampling = source.receiver.sampling;
-        modules.push(sampling.filter.wgsl().0);
-        modules.push(sampling.bias.scheme(sampling.filter).module());
-        if source.receiver.selection == Selection::CubeFace {
-            modules.push("cube_face");
-            modules.extend(sampling.filter.directions().map(|_| "filter_direction"));
-        }
-    }
-    let mut text = shader::compose(&modules)?;
-    let mut line = |arguments: std::fmt::Arguments<'_>| {
-        // Writing to a String does not fail.
-        let _ = text.write_fmt(arguments);
-    };
-    line(format_args!(
-        "\nconst SHADOW_GROUP: u32 = {}u;\n",
-        descriptor.group
-    ));
-    for (binding, sampler) in samplers.iter().enumerate() {
-        let (name, ty) = sampler_names(*sampler);
-        line(format_args!(
-            "@group(SHADOW_GROUP) @binding({binding}) var {name}: {ty};\n"
-        ));
-    }
-    for (light, (name, source)) in descriptor.lights.iter().enumerate() {
-        let views = views_binding(samplers, light);
-        let count = source.receiver.view_count;
-        let sampling = source.receiver.sampling;
-        let make_receiver = sampling.bias.scheme(sampling.filter).function();
-        let (filter, sampler) = sampling.filter.wgsl();
-        let sampler = sampler_names(sampler).0;
-        line(format_args!(
-            "
-@group(SHADOW_GROUP) @binding({views}) var<uniform> shadow_views_{name}: array<ShadowView, {count}>;
-@group(SHADOW_GROUP) @binding({map}) var shadow_map_{name}: texture_depth_2d_array;
-
-",
-            map = views + 1,
-        ));
-        match source.receiver.selection {
-            Selection::FirstInside => line(format_args!(
-                "// Visibility in [0, 1] by the first view that holds the whole kernel; 1 where none does.
-fn shadow_{name}(position: vec3<f32>, normal: vec3<f32>) -> f32 {{
-    for (var i = 0u; i < {count}u; i++) {{
-        let receiver = {make_receiver}(shadow_views_{name}[i], position, normal);
-        if receiver.inside {{
-            return shadow_{filter}(shadow_map_{name}, {sampler}, receiver);
-        }}
-    }}
-    return 1.0;
-}}
-"
-            )),
-            Selection::CubeFace if sampling.filter.directions().is_some() => {
-                let (offsets, count) = sampling.filter.directions().unwrap_or_default();
-                let meets = match sampling.bias {
-                    Bias::Manual { .. } => "shadow_direction_on_sphere(from_light, offset)",
-                    _ => "shadow_direction_on_plane(from_light, normal, offset)",
-                };
-                line(format_args!(
-                    "// Visibility in [0, 1]: the mean over {count} directions; 1 beyond the light's reach.
-fn shadow_{name}(position: vec3<f32>, normal: vec3<f32>) -> f32 {{
-    let anchor = shadow_views_{name}[0].anchor;
-    let from_light = position - anchor;
-    if length(from_light) > shadow_views_{name}[0].range {{
-        return 1.0;
-    }}
-    let radius = shadow_direction_radius(shadow_views_{name}[0], position);
-    var lit = 0.0;
-    for (var i = 0u; i < {count}u; i++) {{
-        let offset = {offsets}(i) * radius;
-        let place = {meets};
-        let face = shadow_cube_face(place);
-        let receiver = {make_receiver}(shadow_views_{name}[face], anchor + place, normal);
-        if receiver.inside {{
-            lit += shadow_{filter}(shadow_map_{name}, {sampler}, receiver);
-        }} else {{
-            lit += 1.0;
-        }}
-    }}
-    return lit / {count}.0;
-}}
-"
-                ));
-            }
-            Selection::CubeFace => line(format_args!(
-                "// Visibility in [0, 1] by the face on which the place lies as seen from the light.
-fn shadow_{name}(position: vec3<f32>, normal: vec3<f32>) -> f32 {{
-    let face = shadow_cube_face(position - shadow_views_{name}[0].anchor);
-    let receiver = {make_receiver}(shadow_views_{name}[face], position, normal);
-    if !receiver.inside {{
-        return 1.0;
-    }}
-    return shadow_{filter}(shadow_map_{name}, {sampler}, receiver);
-}}
-"
-            )),
-        }
-    }
-    Ok(text)
-}
-
-fn sampler_names(sampler: FilterSampler) -> (&'static str, &'static str) {
-    match sampler {
-        FilterSampler::Comparison => ("shadow_comparison_sampler", "sampler_comparison"),
-        FilterSampler::Point => ("shadow_point_sampler", "sampler"),
-    }
 }

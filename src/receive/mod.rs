@@ -5,11 +5,13 @@
 //! bias.rs       how a receiver is kept from shadowing itself
 //! uniforms.rs   the layout that Rust and WGSL share
 //! reference.rs  the WGSL's arithmetic once more in f64
-//! bindings.rs   one bind group for a set of lights, and the WGSL for exactly that set
+//! bindings.rs   one bind group for a set of lights
+//! emit.rs       the WGSL for exactly that set
 //! ```
 
 mod bias;
 mod bindings;
+mod emit;
 mod filter;
 pub mod reference;
 mod uniforms;

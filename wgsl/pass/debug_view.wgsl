@@ -3,17 +3,12 @@
 // Rust twin: src/debug_view.rs. Requires: view, cube_face.
 
 struct ShadowDebugView {
-    // Which view, for the pictures of one.
-    index: u32,
     // 1 where depth is near / distance (a local light), 0 where it is linear (a directional one).
     local: u32,
 }
 
-// Most views that a light has.
-const SHADOW_DEBUG_VIEWS: u32 = 8u;
-
 @group(0) @binding(0) var<uniform> shadow_debug: ShadowDebugView;
-@group(0) @binding(1) var<uniform> shadow_debug_views: array<ShadowView, SHADOW_DEBUG_VIEWS>;
+@group(0) @binding(1) var<uniform> shadow_debug_views: array<ShadowView, 6>;
 @group(0) @binding(2) var shadow_debug_map: texture_depth_2d_array;
 @group(0) @binding(3) var shadow_debug_sampler: sampler;
 
@@ -48,10 +43,10 @@ fn shadow_debug_grey(view: ShadowView, texel: vec2<f32>, ray: vec3<f32>) -> f32 
     return clamp(along_axis * length(ray) / (place.w * view.range), 0.0, 1.0);
 }
 
-// One view: the map as it lies in its layer.
+// One view, the first of the list: the map as it lies in its layer.
 @fragment
 fn shadow_debug_layer(vertex: ShadowDebugVertex) -> @location(0) vec4<f32> {
-    let view = shadow_debug_views[shadow_debug.index];
+    let view = shadow_debug_views[0];
     if view.inner.x > view.inner.z {
         return vec4<f32>(1.0);
     }

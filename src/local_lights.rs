@@ -1,0 +1,240 @@
+//! What spot and point lights share, alone or in a pool: the fit of their perspective views, the choice of which are drawn in
+//! a frame, and the way to the maps.
+
+use glam::DVec3;
+
+use crate::cast::{ShadowCaster, ViewDraws};
+use crate::check;
+use crate::fit::{CameraFrustum, LightAxes, LocalFit, LocalInput, MAX_LOCAL_VIEWS};
+use crate::light_maps::{LayerBase, LightMaps, MapsFrame};
+use crate::{Aabb, CameraView, ShadowError, ShadowReport, ShadowView};
+
+/// State of the lights in the slots of one set of maps.
+#[derive(Debug)]
+pub(crate) struct LocalLights {
+    slots: Vec<SlotState>,
+    bounds: Vec<Aabb>,
+}
+
+#[derive(Clone, Debug, Default)]
+struct SlotState {
+    fit: LocalFit,
+    /// Frames for which a needed refresh has been put off.
+    waited: u32,
+    /// Its layers have been drawn, or found to need nothing, since it came.
+    has_map: bool,
+}
+
+/// A light of a frame.
+pub(crate) struct LocalPlacement {
+    pub slot: u32,
+    pub position_world: DVec3,
+    pub range: f32,
+    /// Axes of its views; the first `view_count` count.
+    pub axes: [LightAxes; MAX_LOCAL_VIEWS],
+    pub view_count: u32,
+    /// Tangent of half the angle of a view, without border.
+    pub tangent: f64,
+    pub cone_cosine: f64,
+    /// Who is refreshed first.
+    pub importance: f32,
+}
+
+/// A frame of local lights.
+pub(crate) struct LocalFrame<'a> {
+    pub origin: DVec3,
+    pub lights: &'a [LocalPlacement],
+    pub camera: Option<&'a CameraView>,
+    pub casters: &'a [&'a dyn ShadowCaster],
+    pub receivers: &'a [Aabb],
+    /// Most views to draw.
+    pub max_views: Option<u32>,
+    pub fields: &'static LocalFields,
+}
+
+/// Paths of a light's fields, for its errors.
+pub(crate) struct LocalFields {
+    pub origin: &'static str,
+    pub position: &'static str,
+    pub range: &'static str,
+    pub camera: [&'static str; 3],
+    pub casters: &'static str,
+    pub receivers: &'static str,
+}
+
+/// A light's new fit and what it would draw.
+struct Candidate {
+    fit: LocalFit,
+    views: Vec<ViewDraws>,
+    /// Views that need a pass.
+    needed: u32,
+    refreshed: bool,
+}
+
+impl LocalLights {
+    /// For `capacity` lights.
+    pub fn new(capacity: u32) -> Self {
+        Self {
+            slots: vec![SlotState::default(); capacity as usize],
+            bounds: Vec::new(),
+        }
+    }
+
+    /// Forgets the light of a slot.
+    pub fn reset(&mut self, slot: u32) {
+        self.slots[slot as usize] = SlotState::default();
+    }
+
+    /// Fits, culls, uploads and records into `maps`.
+    pub fn record<'m>(
+        &mut self,
+        maps: &'m mut LightMaps,
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+        frame: &LocalFrame<'_>,
+    ) -> Result<&'m ShadowReport, ShadowError> {
+        let fields = frame.fields;
+        check::finite_vector(fields.origin, frame.origin)?;
+        for light in frame.lights {
+            check::finite_vector(fields.position, light.position_world)?;
+            check::above_zero(fields.range, light.range)?;
+        }
+        let [view_field, clip_field, distance_field] = fields.camera;
+        let camera = frame
+            .camera
+            .map(|camera| camera.frustum(view_field, clip_field, distance_field))
+            .transpose()?;
+        check::caster_bounds(fields.casters, frame.casters, &mut self.bounds)?;
+        check::receiver_bounds(fields.receivers, frame.receivers)?;
+
+        let mut candidates = frame
+            .lights
+            .iter()
+            .map(|light| self.candidate(maps, frame, light, camera.as_ref()))
+            .collect::<Result<Vec<_>, _>>()?;
+        self.choose(frame, &mut candidates);
+
+        let (mut layers, mut views) = (Vec::new(), Vec::new());
+        for (light, candidate) in frame.lights.iter().zip(&mut candidates) {
+            let first_layer = light.slot * light.view_count;
+            layers.extend((0..light.view_count).map(|view| LayerBase {
+                layer: first_layer + view,
+                anchor_render: (light.position_world - frame.origin).as_vec3(),
+                reach_world: candidate.fit.reach,
+            }));
+            if candidate.refreshed {
+                views.append(&mut candidate.views);
+            } else if self.slots[light.slot as usize].has_map {
+                let held = maps.views_in(first_layer..first_layer + light.view_count);
+                views.extend(held.map(|draws| ViewDraws {
+                    deferred: true,
+                    ..ViewDraws::new(draws.view.rebased(frame.origin), Vec::new())
+                }));
+            }
+        }
+        let maps_frame = MapsFrame {
+            layers,
+            views,
+            viewer_render: camera.as_ref().map(CameraFrustum::eye_render),
+            casters: frame.casters,
+        };
+        let report = maps.record(device, encoder, maps_frame)?;
+        for (light, candidate) in frame.lights.iter().zip(candidates) {
+            let state = &mut self.slots[light.slot as usize];
+            if candidate.refreshed {
+                *state = SlotState {
+                    fit: candidate.fit,
+                    waited: 0,
+                    has_map: true,
+                };
+            } else {
+                state.waited = state.waited.saturating_add(1);
+            }
+        }
+        Ok(report)
+    }
+
+    /// Fits and culls one light.
+    fn candidate(
+        &self,
+        maps: &mut LightMaps,
+        frame: &LocalFrame<'_>,
+        light: &LocalPlacement,
+        camera: Option<&CameraFrustum>,
+    ) -> Result<Candidate, ShadowError> {
+        let axes = &light.axes[..light.view_count as usize];
+        let input = LocalInput {
+            origin: frame.origin,
+            position_world: light.position_world,
+            range: f64::from(light.range),
+            views: axes,
+            receiver_tangent: light.tangent,
+            caster_tangent: light.tangent
+                * border(maps.map_size(), maps.sampling().border_texels()),
+            camera,
+            casters: &self.bounds,
+            receivers: frame.receivers,
+            map_size: maps.map_size(),
+            margin_texels: maps.sampling().margin_texels(),
+        };
+        let mut drawn: [Vec<u32>; MAX_LOCAL_VIEWS] = std::array::from_fn(|_| maps.spare_list());
+        let fit = self.slots[light.slot as usize].fit.fit(&input, &mut drawn);
+        let mut views = Vec::with_capacity(axes.len());
+        for ((index, axes), casters) in axes.iter().enumerate().zip(drawn) {
+            let Some(window) = &fit.windows[index] else {
+                continue;
+            };
+            let view = ShadowView::perspective(
+                axes,
+                light.position_world,
+                window,
+                &fit,
+                light.cone_cosine,
+                frame.origin,
+                light.slot * light.view_count + index as u32,
+            );
+            views.push(ViewDraws::new(view.checked()?, casters));
+        }
+        let needed = views
+            .iter()
+            .filter(|draws| maps.needs(draws, frame.casters));
+        Ok(Candidate {
+            needed: needed.count() as u32,
+            fit,
+            views,
+            refreshed: true,
+        })
+    }
+
+    /// Spends the budget: lights in need of a refresh by importance times the frames they have waited, so that none starves.
+    /// The first is always refreshed, however small the budget.
+    fn choose(&self, frame: &LocalFrame<'_>, candidates: &mut [Candidate]) {
+        let Some(max_views) = frame.max_views else {
+            return;
+        };
+        let urgency = |index: usize| {
+            let light = &frame.lights[index];
+            let waited = self.slots[light.slot as usize].waited;
+            light.importance * (1.0 + waited as f32)
+        };
+        let mut order: Vec<usize> = (0..candidates.len())
+            .filter(|&index| candidates[index].needed > 0)
+            .collect();
+        order.sort_by(|&a, &b| urgency(b).total_cmp(&urgency(a)));
+        let mut spent = 0;
+        for (rank, index) in order.into_iter().enumerate() {
+            let candidate = &mut candidates[index];
+            candidate.refreshed = rank == 0 || spent + candidate.needed <= max_views;
+            if candidate.refreshed {
+                spent += candidate.needed;
+            }
+        }
+    }
+}
+
+/// How much wider than its receivers a view of `map_size` texels is rendered, so that no kernel leaves it: tan(fov/2) grows by
+/// N / (N - 2 border). A map smaller than its borders keeps its middle half.
+fn border(map_size: u32, border_texels: f64) -> f64 {
+    let size = f64::from(map_size);
+    size / (size - 2.0 * border_texels.min(size * 0.25))
+}

@@ -1,0 +1,336 @@
+//! Pools of local lights: many lights, one texture array, one bind group entry, one WGSL function that takes an index.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use glam::DVec3;
+
+use crate::cast::ShadowCaster;
+use crate::check;
+use crate::light_maps::{LightMaps, LightMapsDescriptor, light_maps_getters};
+use crate::local_lights::{LocalFields, LocalFrame, LocalLights, LocalPlacement};
+use crate::receive::{Sampling, Selection, ShadowViewUniform};
+use crate::{Aabb, Bias, CameraView, Filter, OmniLight, ShadowError, ShadowReport, SpotLight};
+
+/// What a pool is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoolDescriptor<'a> {
+    /// Label from which all objects derive theirs. Default "shadow pool".
+    pub label: wgpu::Label<'a>,
+    /// Lights that it can hold at once, fixed for its life: at least 1, and no more than the device's texture layers and
+    /// uniform bytes allow (42 point lights or 256 spots by WebGPU's defaults). Default 16.
+    pub capacity: u32,
+    /// Texels per side of each map, 1 up to the device's `max_texture_dimension_2d`. Default 512.
+    pub map_size: u32,
+    /// How a map is looked up.
+    pub filter: Filter,
+    /// How receivers are kept from shadowing themselves.
+    pub bias: Bias,
+}
+
+impl Default for PoolDescriptor<'_> {
+    fn default() -> Self {
+        Self {
+            label: None,
+            capacity: 16,
+            map_size: 512,
+            filter: Filter::default(),
+            bias: Bias::Auto,
+        }
+    }
+}
+
+/// A light's place in a pool, from [`OmniShadowPool::insert`] or [`SpotShadowPool::insert`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ShadowSlot {
+    index: u32,
+    /// Tells pools, and lights that had the slot before, apart.
+    ticket: u64,
+}
+
+impl ShadowSlot {
+    /// The index to hand to the WGSL function: below the pool's capacity, the light's own until it is removed.
+    pub const fn index(&self) -> u32 {
+        self.index
+    }
+}
+
+/// A light of a pool in a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoolLight<L> {
+    /// Its slot.
+    pub slot: ShadowSlot,
+    /// The light.
+    pub light: L,
+    /// Who is refreshed first where a budget does not suffice: at least 0, finite; for instance the light's share of the
+    /// picture. A light that is put off counts for one frame more each time, so that none starves.
+    pub importance: f32,
+}
+
+/// What a pool needs to know of a frame. Lights of the pool that are not listed are lit everywhere.
+#[derive(Clone, Copy)]
+pub struct PoolFrame<'a, L> {
+    /// World position of render space's origin, f64. Zero unless the engine renders relative to its camera.
+    pub origin: DVec3,
+    /// The lights.
+    pub lights: &'a [PoolLight<L>],
+    /// The camera whose picture the shadows are for: what it does not see needs no map. None for all of space.
+    pub camera: Option<CameraView>,
+    /// Everything that may cast; all of it receives, too.
+    pub casters: &'a [&'a dyn ShadowCaster],
+    /// Bounds in render space of surfaces that only receive.
+    pub receivers: &'a [Aabb],
+    /// Most views (of `map_size`² texels each) to draw in this frame; none for no limit. The most important lights are
+    /// refreshed first, and at least one is; the others show their last map and are reported as deferred. A light that has
+    /// never been drawn is lit until its turn.
+    pub max_views: Option<u32>,
+}
+
+/// Slots of a pool and the tickets they are given out under.
+#[derive(Debug)]
+struct Slots {
+    tickets: Vec<Option<u64>>,
+}
+
+static NEXT_TICKET: AtomicU64 = AtomicU64::new(0);
+
+impl Slots {
+    fn insert(&mut self) -> Result<ShadowSlot, ShadowError> {
+        let free = self.tickets.iter().position(Option::is_none);
+        let index = free.ok_or(ShadowError::PoolFull {
+            capacity: self.tickets.len() as u32,
+        })?;
+        let ticket = NEXT_TICKET.fetch_add(1, Ordering::Relaxed);
+        self.tickets[index] = Some(ticket);
+        Ok(ShadowSlot {
+            index: index as u32,
+            ticket,
+        })
+    }
+
+    fn check(&self, field: &'static str, slot: ShadowSlot) -> Result<(), ShadowError> {
+        match self.tickets.get(slot.index as usize) {
+            Some(Some(ticket)) if *ticket == slot.ticket => Ok(()),
+            _ => Err(ShadowError::UnknownSlot {
+                field,
+                index: slot.index,
+            }),
+        }
+    }
+
+    fn check_frame<L>(&self, lights: &[PoolLight<L>]) -> Result<(), ShadowError> {
+        let mut seen = vec![false; self.tickets.len()];
+        for light in lights {
+            self.check("PoolFrame::lights.slot", light.slot)?;
+            let index = light.slot.index;
+            if std::mem::replace(&mut seen[index as usize], true) {
+                return Err(ShadowError::DuplicateSlot {
+                    field: "PoolFrame::lights.slot",
+                    index,
+                });
+            }
+            check::in_range(
+                "PoolFrame::lights.importance",
+                "finite and at least 0",
+                light.importance >= 0.0 && light.importance.is_finite(),
+                light.importance,
+            )?;
+        }
+        Ok(())
+    }
+}
+
+const FIELDS: LocalFields = LocalFields {
+    origin: "PoolFrame::origin",
+    position: "PoolFrame::lights.position_world",
+    range: "PoolFrame::lights.range",
+    camera: [
+        "PoolFrame::camera.view_from_render",
+        "PoolFrame::camera.clip_from_view",
+        "PoolFrame::camera.max_distance",
+    ],
+    casters: "PoolFrame::casters",
+    receivers: "PoolFrame::receivers",
+};
+
+fn check_descriptor(
+    device: &wgpu::Device,
+    descriptor: &PoolDescriptor<'_>,
+    views_per_light: u32,
+) -> Result<(), ShadowError> {
+    let field = "PoolDescriptor::capacity";
+    check::in_range(
+        field,
+        "at least 1",
+        descriptor.capacity > 0,
+        descriptor.capacity,
+    )?;
+    let limits = device.limits();
+    let view_bytes = size_of::<ShadowViewUniform>() as u64;
+    let by_uniform =
+        limits.max_uniform_buffer_binding_size / (view_bytes * u64::from(views_per_light));
+    let checks = [
+        (
+            "max_texture_array_layers / views per light",
+            limits.max_texture_array_layers / views_per_light,
+        ),
+        (
+            "max_uniform_buffer_binding_size / bytes per light",
+            u32::try_from(by_uniform).unwrap_or(u32::MAX),
+        ),
+    ];
+    match checks
+        .into_iter()
+        .find(|(_, most)| descriptor.capacity > *most)
+    {
+        None => Ok(()),
+        Some((limit, maximum)) => Err(ShadowError::OverDeviceLimit {
+            field,
+            limit,
+            maximum,
+            value: descriptor.capacity,
+        }),
+    }
+}
+
+/// The two pools differ in their lights alone.
+macro_rules! pool {
+    (
+        $(#[$doc:meta])* $pool:ident, $light:ty, $views:literal, $selection:expr, $filter_check:path,
+        |$entry:ident| $placement:expr
+    ) => {
+        $(#[$doc])*
+        #[derive(Debug)]
+        pub struct $pool {
+            maps: LightMaps,
+            lights: LocalLights,
+            slots: Slots,
+        }
+
+        impl $pool {
+            /// Makes texture and buffers for all slots.
+            ///
+            /// # Errors
+            /// [`ShadowError`] for a descriptor out of range, or a device that cannot hold it.
+            pub fn new(
+                device: &wgpu::Device,
+                descriptor: &PoolDescriptor<'_>,
+            ) -> Result<Self, ShadowError> {
+                $filter_check("PoolDescriptor::filter", descriptor.filter)?;
+                check::bias("PoolDescriptor::bias", descriptor.bias)?;
+                check_descriptor(device, descriptor, $views)?;
+                let maps = LightMaps::new(
+                    device,
+                    &LightMapsDescriptor {
+                        label: descriptor.label.unwrap_or("shadow pool"),
+                        size_field: "PoolDescriptor::map_size",
+                        map_size: descriptor.map_size,
+                        layers: descriptor.capacity * $views,
+                        sampling: Sampling {
+                            filter: descriptor.filter,
+                            bias: descriptor.bias,
+                        },
+                        selection: $selection,
+                        views_per_light: $views,
+                        indexed: true,
+                    },
+                )?;
+                Ok(Self {
+                    maps,
+                    lights: LocalLights::new(descriptor.capacity),
+                    slots: Slots {
+                        tickets: vec![None; descriptor.capacity as usize],
+                    },
+                })
+            }
+
+            /// Takes a light in.
+            ///
+            /// # Errors
+            /// [`ShadowError::PoolFull`] where all slots are taken.
+            pub fn insert(&mut self) -> Result<ShadowSlot, ShadowError> {
+                let slot = self.slots.insert()?;
+                self.lights.reset(slot.index);
+                Ok(slot)
+            }
+
+            /// Gives a light's slot back.
+            ///
+            /// # Errors
+            /// [`ShadowError::UnknownSlot`] for a slot that is not this pool's, or no longer.
+            pub fn remove(&mut self, slot: ShadowSlot) -> Result<(), ShadowError> {
+                self.slots.check("slot", slot)?;
+                self.slots.tickets[slot.index as usize] = None;
+                Ok(())
+            }
+
+            /// Fits the lights to the frame, culls, writes the uniforms and records the depth passes that are needed and that
+            /// the budget allows. A light in which nothing changed costs no pass.
+            ///
+            /// The encoder must be submitted before anything that asks for these shadows. One that is thrown away takes its
+            /// depth passes with it: then call `invalidate`.
+            ///
+            /// # Errors
+            /// [`ShadowError`] for lights, bounds or a camera that are not sound, or slots that are not this pool's. Nothing
+            /// is recorded then, and the last good maps remain.
+            pub fn record(
+                &mut self,
+                device: &wgpu::Device,
+                encoder: &mut wgpu::CommandEncoder,
+                frame: &PoolFrame<'_, $light>,
+            ) -> Result<&ShadowReport, ShadowError> {
+                self.slots.check_frame(frame.lights)?;
+                let lights = frame
+                    .lights
+                    .iter()
+                    .map(|$entry| $placement)
+                    .collect::<Result<Vec<LocalPlacement>, ShadowError>>()?;
+                self.lights.record(
+                    &mut self.maps,
+                    device,
+                    encoder,
+                    &LocalFrame {
+                        origin: frame.origin,
+                        lights: &lights,
+                        camera: frame.camera.as_ref(),
+                        casters: frame.casters,
+                        receivers: frame.receivers,
+                        max_views: frame.max_views,
+                        fields: &FIELDS,
+                    },
+                )
+            }
+        }
+    };
+}
+
+pool!(
+    /// Shadows of point lights that come and go: six layers of one texture array a slot.
+    ///
+    /// In WGSL: `shadow_NAME(slot.index(), position, normal)`.
+    OmniShadowPool,
+    OmniLight,
+    6,
+    Selection::CubeFace,
+    check::filter,
+    |entry| Ok(entry.light.placement(entry.slot.index, entry.importance))
+);
+
+pool!(
+    /// Shadows of spot lights that come and go: one layer of one texture array a slot.
+    ///
+    /// In WGSL: `shadow_NAME(slot.index(), position, normal)`.
+    SpotShadowPool,
+    SpotLight,
+    1,
+    Selection::FirstInside,
+    check::planar_filter,
+    |entry| entry.light.placement(
+        entry.slot.index,
+        entry.importance,
+        "PoolFrame::lights.direction",
+        "PoolFrame::lights.outer_angle_radians",
+    )
+);
+
+light_maps_getters!(OmniShadowPool, "face, six to a slot");
+light_maps_getters!(SpotShadowPool, "slot");
