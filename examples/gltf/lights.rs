@@ -1,55 +1,76 @@
-//! The scene's shadows, and the WGSL that asks them.
+//! The scene's shadows, and the WGSL that asks them: a `DirectionalShadow` for each sun, pools for spots and lamps.
 
 use std::fmt::Write;
 
-use glam::Vec3;
-use serde_json::{Value, json};
 use wgpu_shadows::{
     Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowBindings,
-    ShadowBindingsDescriptor, ShadowCaster, ShadowReport, ShadowSource, SpotFrame, SpotLight,
-    SpotShadow, SpotShadowDescriptor,
+    OmniLight, OmniShadowPool, PoolDescriptor, PoolFrame, PoolLight, ShadowBindings,
+    ShadowBindingsDescriptor, ShadowCaster, ShadowReport, ShadowSlot, ShadowSource, SpotLight,
+    SpotShadowPool,
 };
 
 use crate::device::Gpu;
-use crate::measure::Times;
 use crate::options::Options;
 use crate::scene::{Light, LightKind, Scene};
 
 /// Lights that the shader loops over.
-pub const MAX_LIGHTS: usize = 8;
+pub const MAX_LIGHTS: usize = 256;
+/// Directional lights with shadows: each takes a texture of its own.
+const MAX_SUNS: usize = 4;
+/// Local lights in one pool: 40 times six faces are 240 layers and 54 KB of uniforms, within WebGPU's defaults.
+const POOL_CAPACITY: usize = 40;
 
-/// A light's shadow maps.
-enum Shadow {
-    Directional(Box<DirectionalShadow>),
-    Spot(Box<SpotShadow>),
-    Omni(Box<OmniShadow>),
+/// A set of maps, and the lights of the scene that it serves.
+enum Maps {
+    Sun {
+        shadow: Box<DirectionalShadow>,
+        light: usize,
+    },
+    Spots {
+        pool: Box<SpotShadowPool>,
+        slots: Vec<(ShadowSlot, usize)>,
+    },
+    Lamps {
+        pool: Box<OmniShadowPool>,
+        slots: Vec<(ShadowSlot, usize)>,
+    },
 }
 
-impl Shadow {
+impl Maps {
     fn source(&self) -> ShadowSource<'_> {
         match self {
-            Self::Directional(shadow) => shadow.source(),
-            Self::Spot(shadow) => shadow.source(),
-            Self::Omni(shadow) => shadow.source(),
+            Self::Sun { shadow, .. } => shadow.source(),
+            Self::Spots { pool, .. } => pool.source(),
+            Self::Lamps { pool, .. } => pool.source(),
         }
     }
 
     fn report(&self) -> &ShadowReport {
         match self {
-            Self::Directional(shadow) => shadow.report(),
-            Self::Spot(shadow) => shadow.report(),
-            Self::Omni(shadow) => shadow.report(),
+            Self::Sun { shadow, .. } => shadow.report(),
+            Self::Spots { pool, .. } => pool.report(),
+            Self::Lamps { pool, .. } => pool.report(),
+        }
+    }
+
+    /// Lights of the scene, with their index in the pool.
+    fn lights(&self) -> Vec<(usize, u32)> {
+        match self {
+            Self::Sun { light, .. } => vec![(*light, 0)],
+            Self::Spots { slots, .. } | Self::Lamps { slots, .. } => slots
+                .iter()
+                .map(|(slot, light)| (*light, slot.index()))
+                .collect(),
         }
     }
 }
 
-/// Lights of the scene with the shadows of those that have some.
+/// Lights of the scene with their shadows.
 pub struct SceneLights {
     pub lights: Vec<Light>,
-    shadows: Vec<Option<Shadow>>,
+    maps: Vec<(String, Maps)>,
     pub bindings: ShadowBindings,
-    /// `visibility_of_light(index, position, normal)`.
+    /// `visibility_of_light(maps, index, position, normal)`.
     pub wgsl: String,
     max_distance: f32,
 }
@@ -65,7 +86,11 @@ pub struct LightUniform {
     position: [f32; 3],
     cone_scale: f32,
     cone_offset: f32,
-    padding: [f32; 3],
+    /// Which maps, counted from 1; 0 for a light without shadows.
+    maps: u32,
+    /// Index in a pool.
+    index: u32,
+    padding: f32,
 }
 
 impl SceneLights {
@@ -78,15 +103,14 @@ impl SceneLights {
             );
             lights.truncate(MAX_LIGHTS);
         }
-        let shadows = lights
+        let maps = if options.no_shadows {
+            Vec::new()
+        } else {
+            make_maps(gpu, &lights, options)?
+        };
+        let sources: Vec<(&str, ShadowSource<'_>)> = maps
             .iter()
-            .map(|light| shadow_of(gpu, light, options))
-            .collect::<Result<Vec<_>, _>>()?;
-        let names: Vec<String> = (0..lights.len()).map(light_name).collect();
-        let sources: Vec<(&str, ShadowSource<'_>)> = names
-            .iter()
-            .zip(&shadows)
-            .filter_map(|(name, shadow)| Some((name.as_str(), shadow.as_ref()?.source())))
+            .map(|(name, maps)| (name.as_str(), maps.source()))
             .collect();
         let bindings = ShadowBindings::new(
             &gpu.device,
@@ -98,10 +122,10 @@ impl SceneLights {
             },
         )
         .map_err(|error| error.to_string())?;
-        let wgsl = visibility_of_light(&sources, &names);
+        let wgsl = visibility_of_light(&maps);
         Ok(Self {
             lights,
-            shadows,
+            maps,
             bindings,
             wgsl,
             max_distance: options.max_distance,
@@ -117,72 +141,69 @@ impl SceneLights {
         casters: &[&dyn ShadowCaster],
     ) -> Result<(), String> {
         let camera = scene.camera.with_max_distance(self.max_distance);
-        for (light, shadow) in self.lights.iter().zip(&mut self.shadows) {
-            let Some(shadow) = shadow else { continue };
-            let position_world = scene.origin + light.position_render.as_dvec3();
-            match shadow {
-                Shadow::Directional(shadow) => shadow.record(
+        let lights = &self.lights;
+        for (_, maps) in &mut self.maps {
+            let recorded = match maps {
+                Maps::Sun { shadow, light } => shadow.record(
                     &gpu.device,
                     encoder,
                     &DirectionalFrame {
                         origin: scene.origin,
-                        light: DirectionalLight::new(light.direction),
+                        light: DirectionalLight::new(lights[*light].direction),
                         coverage: Coverage::Camera(camera),
                         casters,
                         receivers: &[],
                     },
                 ),
-                Shadow::Spot(shadow) => shadow.record(
-                    &gpu.device,
-                    encoder,
-                    &SpotFrame {
-                        origin: scene.origin,
-                        light: SpotLight {
-                            position_world,
-                            direction: light.direction,
-                            outer_angle_radians: light.kind.outer_angle_radians(),
-                            range: light.range,
-                        },
-                        camera: Some(camera),
-                        casters,
-                        receivers: &[],
-                    },
-                ),
-                Shadow::Omni(shadow) => shadow.record(
-                    &gpu.device,
-                    encoder,
-                    &OmniFrame {
-                        origin: scene.origin,
-                        light: OmniLight {
-                            position_world,
-                            range: light.range,
-                        },
-                        camera: Some(camera),
-                        casters,
-                        receivers: &[],
-                    },
-                ),
-            }
-            .map_err(|error| error.to_string())?;
+                Maps::Spots { pool, slots } => {
+                    let spot = |light: &Light| SpotLight {
+                        position_world: scene.origin + light.position_render.as_dvec3(),
+                        direction: light.direction,
+                        outer_angle_radians: light.kind.outer_angle_radians(),
+                        range: light.range,
+                    };
+                    let listed = listed(slots, lights, spot);
+                    let frame = pool_frame(scene, &listed, camera, casters);
+                    pool.record(&gpu.device, encoder, &frame)
+                }
+                Maps::Lamps { pool, slots } => {
+                    let lamp = |light: &Light| OmniLight {
+                        position_world: scene.origin + light.position_render.as_dvec3(),
+                        range: light.range,
+                    };
+                    let listed = listed(slots, lights, lamp);
+                    let frame = pool_frame(scene, &listed, camera, casters);
+                    pool.record(&gpu.device, encoder, &frame)
+                }
+            };
+            recorded.map_err(|error| error.to_string())?;
         }
         Ok(())
     }
 
     /// Makes the next frame draw every map anew.
     pub fn invalidate(&mut self) {
-        for shadow in self.shadows.iter_mut().flatten() {
-            match shadow {
-                Shadow::Directional(shadow) => shadow.invalidate(),
-                Shadow::Spot(shadow) => shadow.invalidate(),
-                Shadow::Omni(shadow) => shadow.invalidate(),
+        for (_, maps) in &mut self.maps {
+            match maps {
+                Maps::Sun { shadow, .. } => shadow.invalidate(),
+                Maps::Spots { pool, .. } => pool.invalidate(),
+                Maps::Lamps { pool, .. } => pool.invalidate(),
             }
         }
     }
 
-    pub fn uniforms(&self) -> [LightUniform; MAX_LIGHTS] {
-        let mut uniforms = [LightUniform::default(); MAX_LIGHTS];
+    /// Each set of maps with its report and the lights that it serves.
+    pub fn reports(&self) -> impl Iterator<Item = (&str, &ShadowReport, Vec<usize>)> {
+        self.maps.iter().map(|(name, maps)| {
+            let lights = maps.lights().into_iter().map(|(light, _)| light).collect();
+            (name.as_str(), maps.report(), lights)
+        })
+    }
+
+    pub fn uniforms(&self) -> Vec<LightUniform> {
+        let mut uniforms = vec![LightUniform::default(); MAX_LIGHTS];
         for (uniform, light) in uniforms.iter_mut().zip(&self.lights) {
-            // Outside a directional or point light's non-existent cone, scale 0 and offset 1 let everything through.
+            // Without a cone, scale 0 and offset 1 let everything through.
             let (cone_scale, cone_offset) = match light.kind {
                 LightKind::Spot {
                     inner_cone_radians,
@@ -202,8 +223,14 @@ impl SceneLights {
                 position: light.position_render.to_array(),
                 cone_scale,
                 cone_offset,
-                padding: [0.0; 3],
+                ..Default::default()
             };
+        }
+        for (number, (_, maps)) in (1..).zip(&self.maps) {
+            for (light, index) in maps.lights() {
+                uniforms[light].maps = number;
+                uniforms[light].index = index;
+            }
         }
         uniforms
     }
@@ -229,116 +256,139 @@ impl SceneLights {
             1.0
         }
     }
+}
 
-    /// The lights' reports and the times, for `--report`.
-    pub fn report_json(&self, gpu: &Gpu, scene: &Scene, times: &Times) -> Value {
-        let vector = |v: Vec3| json!([v.x, v.y, v.z]);
-        let lights: Vec<Value> = self
-            .lights
-            .iter()
-            .zip(&self.shadows)
-            .map(|(light, shadow)| {
-                json!({
-                    "kind": format!("{:?}", light.kind),
-                    "direction": vector(light.direction),
-                    "shadow": shadow.as_ref().map(|shadow| report_value(shadow.report())),
-                })
-            })
-            .collect();
-        json!({
-            "adapter": gpu.adapter_info.name,
-            "backend": gpu.adapter_info.backend.to_string(),
-            "instances": scene.instances.len(),
-            "triangles": scene.triangle_count(),
-            "lights": lights,
-            "times": times.to_json(),
+fn listed<L>(
+    slots: &[(ShadowSlot, usize)],
+    lights: &[Light],
+    convert: impl Fn(&Light) -> L,
+) -> Vec<PoolLight<L>> {
+    slots
+        .iter()
+        .map(|(slot, light)| PoolLight {
+            slot: *slot,
+            light: convert(&lights[*light]),
+            importance: 1.0,
         })
+        .collect()
+}
+
+fn pool_frame<'a, L>(
+    scene: &Scene,
+    lights: &'a [PoolLight<L>],
+    camera: wgpu_shadows::CameraView,
+    casters: &'a [&'a dyn ShadowCaster],
+) -> PoolFrame<'a, L> {
+    PoolFrame {
+        origin: scene.origin,
+        lights,
+        camera: Some(camera),
+        casters,
+        receivers: &[],
+        max_views: None,
     }
 }
 
-fn shadow_of(gpu: &Gpu, light: &Light, options: &Options) -> Result<Option<Shadow>, String> {
-    if options.no_shadows {
-        return Ok(None);
-    }
-    let (device, map_size) = (&gpu.device, options.map_size);
-    let (filter, bias) = (options.filter, options.bias);
-    let made = match light.kind {
-        LightKind::Directional => {
-            let descriptor = DirectionalShadowDescriptor {
-                label: Some("sun"),
-                map_size,
-                cascades: options.cascades,
-                filter,
-                bias,
-                ..Default::default()
-            };
-            DirectionalShadow::new(device, &descriptor)
-                .map(|shadow| Shadow::Directional(Box::new(shadow)))
-        }
-        LightKind::Spot { .. } => {
-            let label = Some("spot");
-            let descriptor = SpotShadowDescriptor {
-                label,
-                map_size,
-                filter,
-                bias,
-            };
-            SpotShadow::new(device, &descriptor).map(|shadow| Shadow::Spot(Box::new(shadow)))
-        }
-        LightKind::Point => {
-            let label = Some("lamp");
-            let descriptor = OmniShadowDescriptor {
-                label,
-                map_size,
-                filter,
-                bias,
-            };
-            OmniShadow::new(device, &descriptor).map(|shadow| Shadow::Omni(Box::new(shadow)))
-        }
+/// Suns one by one, spots and lamps in pools of one map size each. Names end in a letter, as WGSL wants them.
+fn make_maps(
+    gpu: &Gpu,
+    lights: &[Light],
+    options: &Options,
+) -> Result<Vec<(String, Maps)>, String> {
+    let of_kind = |wanted: fn(&LightKind) -> bool| -> Vec<usize> {
+        (0..lights.len())
+            .filter(|&light| wanted(&lights[light].kind))
+            .collect()
     };
-    made.map(Some).map_err(|error| error.to_string())
+    let suns = of_kind(|kind| *kind == LightKind::Directional);
+    let spots = of_kind(|kind| matches!(kind, LightKind::Spot { .. }));
+    let lamps = of_kind(|kind| *kind == LightKind::Point);
+    if suns.len() > MAX_SUNS {
+        eprintln!(
+            "note: {} of {} directional lights have shadows",
+            MAX_SUNS,
+            suns.len()
+        );
+    }
+    // A lamp or two may be as fine as a sun; a hall full of them shares the memory.
+    let local_map_size = options.map_size.unwrap_or(match spots.len() + lamps.len() {
+        0..=2 => 2048,
+        3..=8 => 1024,
+        _ => 512,
+    });
+    let letter = |number: usize| (b'a' + number as u8) as char;
+    let mut maps = Vec::new();
+    for (number, &light) in suns.iter().take(MAX_SUNS).enumerate() {
+        let shadow = DirectionalShadow::new(
+            &gpu.device,
+            &DirectionalShadowDescriptor {
+                label: Some("sun"),
+                map_size: options.map_size.unwrap_or(2048),
+                cascades: options.cascades,
+                filter: options.filter,
+                bias: options.bias,
+                ..Default::default()
+            },
+        )
+        .map_err(|error| error.to_string())?;
+        let shadow = Box::new(shadow);
+        maps.push((
+            format!("sun_{}", letter(number)),
+            Maps::Sun { shadow, light },
+        ));
+    }
+    let descriptor = |label, lights: &[usize]| PoolDescriptor {
+        label: Some(label),
+        capacity: lights.len() as u32,
+        map_size: local_map_size,
+        filter: options.filter,
+        bias: options.bias,
+    };
+    for (number, lights) in spots.chunks(POOL_CAPACITY).enumerate() {
+        let mut pool = SpotShadowPool::new(&gpu.device, &descriptor("spots", lights))
+            .map_err(|error| error.to_string())?;
+        let slots = take_slots(lights, || pool.insert())?;
+        let pool = Box::new(pool);
+        maps.push((
+            format!("spots_{}", letter(number)),
+            Maps::Spots { pool, slots },
+        ));
+    }
+    for (number, lights) in lamps.chunks(POOL_CAPACITY).enumerate() {
+        let mut pool = OmniShadowPool::new(&gpu.device, &descriptor("lamps", lights))
+            .map_err(|error| error.to_string())?;
+        let slots = take_slots(lights, || pool.insert())?;
+        let pool = Box::new(pool);
+        maps.push((
+            format!("lamps_{}", letter(number)),
+            Maps::Lamps { pool, slots },
+        ));
+    }
+    Ok(maps)
 }
 
-/// `light_a`, `light_b` and so on.
-fn light_name(index: usize) -> String {
-    format!("light_{}", (b'a' + index as u8) as char)
+fn take_slots(
+    lights: &[usize],
+    mut insert: impl FnMut() -> Result<ShadowSlot, wgpu_shadows::ShadowError>,
+) -> Result<Vec<(ShadowSlot, usize)>, String> {
+    lights
+        .iter()
+        .map(|&light| Ok((insert().map_err(|error| error.to_string())?, light)))
+        .collect()
 }
 
-fn visibility_of_light(sources: &[(&str, ShadowSource<'_>)], names: &[String]) -> String {
-    let mut text =
-        "fn visibility_of_light(index: u32, position: vec3<f32>, normal: vec3<f32>) -> f32 {\n    switch index {\n".to_owned();
-    for (index, name) in names.iter().enumerate() {
-        if sources.iter().any(|(shadowed, _)| shadowed == name) {
-            // Writing to a String does not fail.
-            let _ = writeln!(
-                text,
-                "        case {index}u: {{ return shadow_{name}(position, normal); }}"
-            );
-        }
+fn visibility_of_light(maps: &[(String, Maps)]) -> String {
+    let mut text = "fn visibility_of_light(maps: u32, index: u32, position: vec3<f32>, normal: vec3<f32>) -> f32 {\n    switch maps {\n".to_owned();
+    for (number, (name, maps)) in (1..).zip(maps) {
+        let index = match maps {
+            Maps::Sun { .. } => "",
+            Maps::Spots { .. } | Maps::Lamps { .. } => "index, ",
+        };
+        // Writing to a String does not fail.
+        let _ = writeln!(
+            text,
+            "        case {number}u: {{ return shadow_{name}({index}position, normal); }}"
+        );
     }
     text + "        default: { return 1.0; }\n    }\n}\n"
-}
-
-fn report_value(report: &ShadowReport) -> Value {
-    let views: Vec<Value> = report
-        .views
-        .iter()
-        .map(|view| {
-            json!({
-                "layer": view.layer,
-                "status": format!("{:?}", view.status),
-                "casters": view.casters,
-                "culled": view.culled,
-                "texel_size_world": [view.texel_size_world.x, view.texel_size_world.y],
-                "depth_range_world": view.depth_range_world,
-                "worst_gap_world": view.worst_gap_world,
-            })
-        })
-        .collect();
-    json!({
-        "views": views,
-        "passes": report.passes,
-        "draws": report.draws(),
-        "bytes_held": report.bytes_held,
-    })
 }

@@ -15,6 +15,7 @@
 //! lights.rs      the scene's shadows, and the WGSL that asks them
 //! render.rs      pipelines and passes
 //! measure.rs     times of the passes
+//! report.rs      the report as JSON
 //! ```
 
 mod casters;
@@ -26,6 +27,7 @@ mod measure;
 mod options;
 mod primitive;
 mod render;
+mod report;
 mod scene;
 
 use std::error::Error;
@@ -74,7 +76,7 @@ fn run(options: &options::Options) -> Result<(), Box<dyn Error>> {
         device::save_png(path, &picture)?;
         println!("wrote {}", path.display());
     }
-    let report = lights.report_json(&gpu, &scene, &times);
+    let report = report::report(&gpu, &scene, &lights, &times);
     if let Some(path) = &options.report {
         std::fs::write(path, serde_json::to_string_pretty(&report)?)
             .map_err(|error| format!("cannot write {}: {error}", path.display()))?;

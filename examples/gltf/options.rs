@@ -24,9 +24,9 @@ pub struct Options {
     /// Size of the picture in pixels.
     #[arg(long, default_value = "960x540", value_parser = size)]
     pub size: [u32; 2],
-    /// Texels per side of each shadow map.
-    #[arg(long, default_value_t = 2048)]
-    pub map_size: u32,
+    /// Texels per side of each shadow map [default: 2048; less for spots and points where there are many]
+    #[arg(long)]
+    pub map_size: Option<u32>,
     /// nearest, hardware, box, bilinear, tent3, tent5 or tent7; the gathered ones with an edge sharpness, as in tent3:3.
     #[arg(long, default_value = "tent3:3", value_parser = filter)]
     pub filter: Filter,

@@ -71,7 +71,7 @@ impl Renderer {
             })
         };
         let frame_uniform = uniform("frame", size_of::<FrameUniform>() as u64);
-        let light_uniform = uniform("lights", size_of::<[LightUniform; MAX_LIGHTS]>() as u64);
+        let light_uniform = uniform("lights", (MAX_LIGHTS * size_of::<LightUniform>()) as u64);
         let buffer_entry = |binding| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,

@@ -16,6 +16,9 @@ struct Light {
     // Cosine fades from 0 to 1 over the rim of a cone: scale and offset.
     cone_scale: f32,
     cone_offset: f32,
+    // Which maps, counted from 1, and which of their lights; 0 for a light without shadows.
+    maps: u32,
+    index: u32,
 }
 
 struct Material {
@@ -110,7 +113,7 @@ fn shade(surface: Surface) -> @location(0) vec4<f32> {
         let halfway = normalize(arriving.toward_light + toward_eye);
         let shine = pow(max(dot(normal, halfway), 0.0), 64.0) * 0.2 * select(0.0, 1.0, facing > 0.0);
         let irradiance = light.intensity * (arriving.share * frame.exposure);
-        let visibility = visibility_of_light(i, surface.position, facet);
+        let visibility = visibility_of_light(light.maps, light.index, surface.position, facet);
         color += irradiance * visibility * (base.rgb * facing + shine);
     }
     return vec4<f32>(color, 1.0);
@@ -126,6 +129,6 @@ fn visibility(surface: Surface) -> @location(0) vec4<f32> {
     }
     let arriving = arrival(lights[0], surface.position);
     let reached = arriving.share > 0.0 && dot(facet, arriving.toward_light) > 0.0;
-    let visible = visibility_of_light(0u, surface.position, facet);
+    let visible = visibility_of_light(lights[0].maps, lights[0].index, surface.position, facet);
     return vec4<f32>(select(1.0, visible, reached));
 }

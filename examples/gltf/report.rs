@@ -1,0 +1,62 @@
+//! The report of a run, as JSON.
+
+use serde_json::{Value, json};
+use wgpu_shadows::ShadowReport;
+
+use crate::device::Gpu;
+use crate::lights::SceneLights;
+use crate::measure::Times;
+use crate::scene::Scene;
+
+/// Scene, adapter, what each set of maps did in the last frame, and times.
+pub fn report(gpu: &Gpu, scene: &Scene, lights: &SceneLights, times: &Times) -> Value {
+    let described: Vec<Value> = lights
+        .lights
+        .iter()
+        .map(|light| {
+            json!({
+                "kind": format!("{:?}", light.kind),
+                "direction": light.direction.to_array(),
+            })
+        })
+        .collect();
+    let maps: Vec<Value> = lights
+        .reports()
+        .map(|(name, report, served)| maps_report(name, report, &served))
+        .collect();
+    json!({
+        "adapter": gpu.adapter_info.name,
+        "backend": gpu.adapter_info.backend.to_string(),
+        "instances": scene.instances.len(),
+        "triangles": scene.triangle_count(),
+        "lights": described,
+        "maps": maps,
+        "times": times.to_json(),
+    })
+}
+
+fn maps_report(name: &str, report: &ShadowReport, lights: &[usize]) -> Value {
+    let views: Vec<Value> = report
+        .views
+        .iter()
+        .map(|view| {
+            json!({
+                "layer": view.layer,
+                "status": format!("{:?}", view.status),
+                "casters": view.casters,
+                "culled": view.culled,
+                "texel_size_world": view.texel_size_world.to_array(),
+                "depth_range_world": view.depth_range_world,
+                "worst_gap_world": view.worst_gap_world,
+            })
+        })
+        .collect();
+    json!({
+        "name": name,
+        "lights": lights,
+        "views": views,
+        "passes": report.passes,
+        "draws": report.draws(),
+        "bytes_held": report.bytes_held,
+    })
+}
