@@ -97,6 +97,14 @@ pub(crate) fn filter(field: &'static str, filter: Filter) -> Result<(), ShadowEr
             radius,
         );
     }
+    if let Filter::Penumbra { light_size } = filter {
+        return in_range(
+            field,
+            "of a finite light size above 0",
+            light_size > 0.0 && light_size.is_finite(),
+            light_size,
+        );
+    }
     let sharpness = filter.sharpness();
     in_range(
         field,

@@ -115,6 +115,12 @@ impl DirectionalShadow {
         )?;
         check::split("DirectionalShadowDescriptor::split", descriptor.split)?;
         check::planar_filter("DirectionalShadowDescriptor::filter", descriptor.filter)?;
+        check::in_range(
+            "DirectionalShadowDescriptor::filter",
+            "of an angular diameter below π",
+            descriptor.filter.light_size() < std::f32::consts::PI,
+            descriptor.filter.light_size(),
+        )?;
         check::bias("DirectionalShadowDescriptor::bias", descriptor.bias)?;
         let sampling = Sampling {
             filter: descriptor.filter,

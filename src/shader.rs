@@ -72,6 +72,11 @@ pub const MODULES: &[ShaderModule] = &[
         "filter_tent_wide.wgsl",
         ["view", "gather"]
     ),
+    module!(
+        "filter_penumbra",
+        "filter_penumbra.wgsl",
+        ["view", "gather", "filter_tent_narrow"]
+    ),
     module!("filter_direction", "filter_direction.wgsl", ["view"]),
     module!("cube_face", "cube_face.wgsl", []),
     module!("normal", "normal.wgsl", []),

@@ -13,6 +13,12 @@ fn shadow_gather(
     let corner = (first + 1.0) / receiver.map_size;
     // Gather's order is counter-clockwise from the lower left.
     let depths = textureGather(map, map_sampler, corner, receiver.layer).wzxy;
+    let lit = shadow_references(receiver, first) >= depths;
+    return select(vec4<f32>(0.0), vec4<f32>(1.0), lit);
+}
+
+// The receiver's own depths at four texels, in the same order; never farther from the light than the receiver itself.
+fn shadow_references(receiver: ShadowReceiver, first: vec2<f32>) -> vec4<f32> {
     let to_first = first + 0.5 - receiver.texel;
     let rise = dot(receiver.gradient, to_first);
     let along = vec4<f32>(
@@ -21,9 +27,7 @@ fn shadow_gather(
         receiver.gradient.y,
         receiver.gradient.x + receiver.gradient.y,
     );
-    // Never farther from the light than the receiver itself.
-    let reference = receiver.depth + max(vec4<f32>(rise) + along, vec4<f32>(0.0));
-    return select(vec4<f32>(0.0), vec4<f32>(1.0), reference >= depths);
+    return receiver.depth + max(vec4<f32>(rise) + along, vec4<f32>(0.0));
 }
 
 // A sharper edge: the ramp of visibility stretched around one half.

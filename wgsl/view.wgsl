@@ -40,6 +40,9 @@ struct ShadowView {
     sample_radius: f32,
     // The viewer in render space; w = 0 where no viewer is known.
     viewer: vec4<f32>,
+    // Texels along x and y over which a light with size spreads a penumbra, per difference of ndc depth.
+    penumbra: vec2<f32>,
+    padding: vec2<f32>,
 }
 
 struct ShadowReceiver {
@@ -51,6 +54,8 @@ struct ShadowReceiver {
     layer: u32,
     map_size: f32,
     sharpness: f32,
+    // Radius of a penumbra in texels per difference of depth.
+    penumbra: vec2<f32>,
     // False where the map says nothing of this place: beyond its sides or its far plane, behind a local light, outside its cone
     // or range.
     inside: bool,
@@ -77,6 +82,7 @@ fn shadow_receiver_at(
     receiver.layer = view.layer;
     receiver.map_size = view.map_size;
     receiver.sharpness = view.sharpness;
+    receiver.penumbra = view.penumbra;
     receiver.inside = within && reached && place.w > 0.0 && depth >= 0.0;
     return receiver;
 }

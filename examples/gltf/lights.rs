@@ -325,7 +325,7 @@ fn make_maps(
                 label: Some("sun"),
                 map_size: options.map_size.unwrap_or(2048),
                 cascades: options.cascades,
-                filter: options.filter,
+                filter: options.sun_filter(),
                 bias: options.bias,
                 ..Default::default()
             },
@@ -341,7 +341,7 @@ fn make_maps(
         label: Some(label),
         capacity: lights.len() as u32,
         map_size: local_map_size,
-        filter: options.filter,
+        filter: options.local_filter(),
         bias: options.bias,
     };
     for (number, lights) in spots.chunks(POOL_CAPACITY).enumerate() {

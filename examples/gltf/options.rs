@@ -39,6 +39,12 @@ pub struct Options {
     /// Distance along the view beyond which nothing is shadowed.
     #[arg(long, default_value_t = f32::INFINITY)]
     pub max_distance: f32,
+    /// Angular diameter of directional lights in radians, for soft shadows (the sun's is 0.0093).
+    #[arg(long, value_parser = positive)]
+    pub angular_diameter: Option<f32>,
+    /// Radius of spot and point lights in metres, for soft shadows.
+    #[arg(long, value_parser = positive)]
+    pub light_radius: Option<f32>,
     /// Leaves shadows out.
     #[arg(long)]
     pub no_shadows: bool,
@@ -48,6 +54,20 @@ pub struct Options {
     /// Frames over which times are taken.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub frames: u32,
+}
+
+impl Options {
+    /// The filter of directional lights.
+    pub fn sun_filter(&self) -> Filter {
+        self.angular_diameter
+            .map_or(self.filter, |light_size| Filter::Penumbra { light_size })
+    }
+
+    /// The filter of spot and point lights.
+    pub fn local_filter(&self) -> Filter {
+        self.light_radius
+            .map_or(self.filter, |light_size| Filter::Penumbra { light_size })
+    }
 }
 
 /// A wgpu backend.
@@ -86,6 +106,14 @@ fn size(text: &str) -> Result<[u32; 2], String> {
         (Some(width), Some(height)) => Ok([width, height]),
         _ => Err(rule.to_owned()),
     }
+}
+
+fn positive(text: &str) -> Result<f32, String> {
+    let number = text
+        .parse()
+        .ok()
+        .filter(|n: &f32| *n > 0.0 && n.is_finite());
+    number.ok_or_else(|| "must be a number above 0".to_owned())
 }
 
 fn filter(text: &str) -> Result<Filter, String> {

@@ -208,6 +208,17 @@ impl ShadowView {
         }
     }
 
+    /// Radius of a penumbra in texels per difference of ndc depth between occluder and receiver, for a directional light of
+    /// `light_size` radians across or a local one of `light_size` world units in radius.
+    pub(crate) fn penumbra_texels(&self, light_size: f64) -> DVec2 {
+        match &self.placement {
+            ViewPlacement::Orthographic { window, .. } => {
+                window.depth.length() * (light_size * 0.5).tan() / window.plane.texel
+            }
+            ViewPlacement::Perspective { window, near, .. } => light_size / near / window.texel,
+        }
+    }
+
     pub(crate) fn placement(&self) -> &ViewPlacement {
         &self.placement
     }

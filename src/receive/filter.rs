@@ -1,5 +1,8 @@
 //! The filters: which texels of a map count for a receiver, and how much.
 
+/// `SHADOW_PENUMBRA_REACH` of the shader, and a texel for its bilinear taps.
+const PENUMBRA_REACH_TEXELS: f64 = 33.0;
+
 /// How a receiver looks a map up.
 ///
 /// | filter | texels | texture instructions | reach (texels) |
@@ -11,6 +14,7 @@
 /// | `TentNarrow` | 16 | 4 gathers | 2 |
 /// | `TentMedium` | 36 | 9 gathers | 3 |
 /// | `TentWide` | 64 | 16 gathers | 4 |
+/// | `Penumbra` | 240 | 60 gathers | 32 |
 /// | `DirectionGrid` | 64 | 64 gathers | 0.5 a sample |
 /// | `DirectionStar` | 20 | 20 gathers | 0.5 a sample |
 ///
@@ -45,6 +49,16 @@ pub enum Filter {
     TentWide {
         /// Edge sharpness, at least 1.
         sharpness: f32,
+    },
+    /// Soft shadows of a light with size (percentage-closer soft shadows, Fernando 2005), calibrated by the light's own size:
+    /// sharp where caster and receiver touch, and as wide as the real penumbra away from it, up to 32 texels.
+    ///
+    /// Where a penumbra would be wider than that, it stays at 32 texels: a smaller map then shows more of it.
+    Penumbra {
+        /// For directional lights the angular diameter in radians (the sun's is 0.0093), below π; for local lights the radius
+        /// in world units. Above 0 and finite; too large a value blurs shadows away from their casters, too small a one makes
+        /// them hard.
+        light_size: f32,
     },
     /// Point lights only: the textbook's 4×4×4 nearest comparisons in a cube of directions around the receiver's own.
     ///
@@ -92,6 +106,7 @@ impl Filter {
             Self::TentNarrow { .. } => 2.0,
             Self::TentMedium { .. } => 3.0,
             Self::TentWide { .. } => 4.0,
+            Self::Penumbra { .. } => PENUMBRA_REACH_TEXELS,
         }
     }
 
@@ -102,11 +117,21 @@ impl Filter {
             | Self::TentNarrow { sharpness }
             | Self::TentMedium { sharpness }
             | Self::TentWide { sharpness } => sharpness,
+            // The tent that stands in where a penumbra is narrower than a texel.
+            Self::Penumbra { .. } => 3.0,
             Self::Nearest
             | Self::Hardware
             | Self::Box
             | Self::DirectionGrid { .. }
             | Self::DirectionStar { .. } => 1.0,
+        }
+    }
+
+    /// Size of the light for [`Filter::Penumbra`]; 0 for the others.
+    pub const fn light_size(self) -> f32 {
+        match self {
+            Self::Penumbra { light_size } => light_size,
+            _ => 0.0,
         }
     }
 
@@ -139,6 +164,7 @@ impl Filter {
             Self::Box | Self::TentNarrow { .. } => 4,
             Self::TentMedium { .. } => 9,
             Self::TentWide { .. } => 16,
+            Self::Penumbra { .. } => 60,
             Self::DirectionGrid { .. } => 64,
             Self::DirectionStar { .. } => 20,
         }
@@ -156,6 +182,7 @@ impl Filter {
             Self::TentNarrow { .. } => ("filter_tent_narrow", FilterSampler::Point),
             Self::TentMedium { .. } => ("filter_tent_medium", FilterSampler::Point),
             Self::TentWide { .. } => ("filter_tent_wide", FilterSampler::Point),
+            Self::Penumbra { .. } => ("filter_penumbra", FilterSampler::Point),
         }
     }
 }

@@ -3,7 +3,7 @@
 //! For an engine's own tests, and for the library's: the device's result is compared with this. Kernels are written here as
 //! what they are, a bilinear comparison convolved with a row of integers, not as the shader's closed form.
 
-use glam::{DMat4, DVec2, DVec3, DVec4, Mat4, Vec3, Vec4};
+use glam::{DMat4, DVec2, DVec3, DVec4, I64Vec2, Mat4, Vec2, Vec3, Vec4};
 
 use crate::receive::bias::BiasScheme;
 use crate::receive::{Bias, Filter, ShadowViewUniform};
@@ -35,6 +35,8 @@ pub struct Receiver {
     pub depth: f64,
     /// Change of the reference depth per texel.
     pub gradient: DVec2,
+    /// Radius of a penumbra in texels per difference of depth.
+    pub penumbra: DVec2,
     /// False where the map says nothing of this place; visibility is 1 there.
     pub inside: bool,
 }
@@ -97,40 +99,111 @@ pub fn visibility(filter: Filter, map: &DepthLayer<'_>, receiver: &Receiver) -> 
     if !receiver.inside {
         return 1.0;
     }
-    let follow = if filter.compares_each_texel() {
-        receiver.gradient
-    } else {
-        DVec2::ZERO
-    };
-    let lit = |x: i64, y: i64| {
-        let center = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
-        let rise = follow.dot(center - receiver.texel).max(0.0);
-        f64::from(u8::from(receiver.depth + rise >= map.depth(x, y)))
-    };
+    if let Filter::Penumbra { .. } = filter {
+        return penumbra(map, receiver);
+    }
+    let mut receiver = *receiver;
+    if !filter.compares_each_texel() {
+        receiver.gradient = DVec2::ZERO;
+    }
     let nearest = receiver.texel.floor().as_i64vec2();
     match kernel(filter) {
         Kernel::Boxed(radius) => {
             let side = -radius..=radius;
             let taps = side.clone().flat_map(|y| side.clone().map(move |x| (x, y)));
-            let sum: f64 = taps.map(|(x, y)| lit(nearest.x + x, nearest.y + y)).sum();
+            let sum: f64 = taps
+                .map(|(x, y)| lit(map, &receiver, nearest + I64Vec2::new(x, y)))
+                .sum();
             sum / ((2 * radius + 1) * (2 * radius + 1)) as f64
         }
         Kernel::Bilinear(row) => {
-            let from_centers = receiver.texel - 0.5;
-            let base = from_centers.floor();
-            let fraction = from_centers - base;
-            let first = base.as_i64vec2() - (row.len() / 2) as i64;
-            let across = bilinear_weights(row, fraction.x);
-            let down = bilinear_weights(row, fraction.y);
-            let mut sum = 0.0;
-            for (y, weight_y) in down.iter().enumerate() {
-                for (x, weight_x) in across.iter().enumerate() {
-                    sum += weight_x * weight_y * lit(first.x + x as i64, first.y + y as i64);
-                }
-            }
-            ((sum - 0.5) * f64::from(filter.sharpness()) + 0.5).clamp(0.0, 1.0)
+            let plain = bilinear(map, &receiver, receiver.texel, row);
+            sharpened(plain, f64::from(filter.sharpness()))
         }
     }
+}
+
+/// The receiver's own depth at a texel: its plane, never farther from the light than the receiver.
+fn reference_depth(receiver: &Receiver, texel: I64Vec2) -> f64 {
+    let center = texel.as_dvec2() + 0.5;
+    receiver.depth + receiver.gradient.dot(center - receiver.texel).max(0.0)
+}
+
+fn lit(map: &DepthLayer<'_>, receiver: &Receiver, texel: I64Vec2) -> f64 {
+    let reference = reference_depth(receiver, texel);
+    f64::from(u8::from(reference >= map.depth(texel.x, texel.y)))
+}
+
+/// A bilinear comparison at `place`, convolved with `row` along both axes.
+fn bilinear(map: &DepthLayer<'_>, receiver: &Receiver, place: DVec2, row: &[f64]) -> f64 {
+    let from_centers = place - 0.5;
+    let base = from_centers.floor();
+    let fraction = from_centers - base;
+    let first = base.as_i64vec2() - (row.len() / 2) as i64;
+    let across = bilinear_weights(row, fraction.x);
+    let down = bilinear_weights(row, fraction.y);
+    let mut sum = 0.0;
+    for (y, weight_y) in down.iter().enumerate() {
+        for (x, weight_x) in across.iter().enumerate() {
+            let texel = first + I64Vec2::new(x as i64, y as i64);
+            sum += weight_x * weight_y * lit(map, receiver, texel);
+        }
+    }
+    sum
+}
+
+fn sharpened(visibility: f64, sharpness: f64) -> f64 {
+    ((visibility - 0.5) * sharpness + 0.5).clamp(0.0, 1.0)
+}
+
+/// `wgsl/filter_penumbra.wgsl`.
+fn penumbra(map: &DepthLayer<'_>, receiver: &Receiver) -> f64 {
+    const REACH: f64 = 32.0;
+    let widest =
+        (receiver.penumbra * (1.0 - receiver.depth)).clamp(DVec2::ONE, DVec2::splat(REACH));
+    let (mut height_sum, mut count) = (0.0, 0.0);
+    for index in 0..24 {
+        // closer together toward the middle, weighted by the area that each sample stands for
+        let t = (f64::from(index) + 0.5) / 24.0;
+        let offset = DVec2::from_angle(f64::from(index) * GOLDEN_ANGLE) * t.powf(1.5);
+        let first = (receiver.texel + offset * widest - 0.5)
+            .floor()
+            .as_i64vec2();
+        for texel in [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| first + I64Vec2::new(x, y)) {
+            let depth = map.depth(texel.x, texel.y);
+            let height = depth - receiver.depth;
+            let aside = ((texel.as_dvec2() + 0.5 - receiver.texel).abs() - 0.5).max(DVec2::ZERO);
+            let hides = (aside / receiver.penumbra).length() <= height;
+            if depth > reference_depth(receiver, texel) && hides {
+                height_sum += t * t * height;
+                count += t * t;
+            }
+        }
+    }
+    if count == 0.0 {
+        return 1.0;
+    }
+    let radius = (receiver.penumbra * (height_sum / count)).min(DVec2::splat(REACH));
+    let hard = sharpened(
+        bilinear(map, receiver, receiver.texel, &[1.0, 2.0, 1.0]),
+        3.0,
+    );
+    let soft = disk(32)
+        .map(|offset| bilinear(map, receiver, receiver.texel + offset * radius, &[1.0]))
+        .sum::<f64>()
+        / 32.0;
+    let share = (radius.max_element() - 1.0).clamp(0.0, 1.0);
+    hard + (soft - hard) * share
+}
+
+const GOLDEN_ANGLE: f64 = 2.399963;
+
+/// Vogel's spiral of `count` places over the unit disk.
+fn disk(count: u32) -> impl Iterator<Item = DVec2> {
+    (0..count).map(move |index| {
+        let radius = ((f64::from(index) + 0.5) / f64::from(count)).sqrt();
+        DVec2::from_angle(f64::from(index) * GOLDEN_ANGLE) * radius
+    })
 }
 
 enum Kernel {
@@ -147,7 +220,10 @@ fn kernel(filter: Filter) -> Kernel {
             Kernel::Boxed(0)
         }
         Filter::Box => Kernel::Boxed(1),
-        Filter::Hardware | Filter::Bilinear { .. } => Kernel::Bilinear(&[1.0]),
+        // A penumbra is made of bilinear lookups.
+        Filter::Hardware | Filter::Bilinear { .. } | Filter::Penumbra { .. } => {
+            Kernel::Bilinear(&[1.0])
+        }
         Filter::TentNarrow { .. } => Kernel::Bilinear(&[1.0, 2.0, 1.0]),
         Filter::TentMedium { .. } => Kernel::Bilinear(&[1.0, 3.0, 4.0, 3.0, 1.0]),
         Filter::TentWide { .. } => Kernel::Bilinear(&[1.0, 5.0, 12.0, 16.0, 12.0, 5.0, 1.0]),
@@ -207,6 +283,7 @@ fn receiver_at(
         texel,
         depth: depth + offset + depth * f64::from(view.depth_error_relative),
         gradient,
+        penumbra: Vec2::from_array(view.penumbra).as_dvec2(),
         inside: within && reached && place.w > 0.0 && depth >= 0.0,
     }
 }

@@ -53,6 +53,10 @@ pub struct ShadowViewUniform {
     pub sample_radius: f32,
     /// The viewer in render space; w is 1, or 0 where no viewer is known.
     pub viewer: [f32; 4],
+    /// Texels along x and y over which a light with size spreads a penumbra, per difference of ndc depth.
+    pub penumbra: [f32; 2],
+    /// WGSL rounds the struct up to 16 bytes.
+    pub padding: [f32; 2],
 }
 
 /// A range for the uniforms: an endless one becomes a distance that none exceeds and whose square is finite.
@@ -126,5 +130,10 @@ pub(crate) fn view_uniform(view: &ShadowView, sampling: &Sampling) -> ShadowView
         cone_cosine: view.cone_cosine() as f32,
         sample_radius: sampling.filter.radius_world(),
         viewer: [0.0; 4],
+        penumbra: view
+            .penumbra_texels(f64::from(sampling.filter.light_size()))
+            .as_vec2()
+            .to_array(),
+        padding: [0.0; 2],
     }
 }

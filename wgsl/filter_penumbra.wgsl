@@ -1,0 +1,86 @@
+// Soft shadows of a light with size: percentage-closer soft shadows (Fernando 2005), calibrated instead of tuned.
+//
+// A point of ndc depth z is shadowed, by an occluder of depth b in front of it, within a disk of radius (b - z) times a
+// constant of the view, for orthographic and perspective views alike: with h the distance along the axis, a sun of angular
+// diameter a spreads h tan(a/2) in world units, and a local light of radius r spreads r (1/w_b - 1/w_z) in tangents, which is
+// r / near times the difference of depths. `receiver.penumbra` is that constant in texels along x and y. First the mean depth
+// of the occluders that can hide a part of the light is found, then visibility is the mean over the disk that they spread.
+// Exact for one planar occluder parallel to the map; elsewhere in error by the averaging of occluders.
+// Every texel is compared with the receiver's own plane, as in `gather`. Rust twin: src/receive/reference.rs.
+// Requires: view, gather, filter_tent_narrow.
+
+// Widest disk in texels; maps keep this much free around what they cover.
+const SHADOW_PENUMBRA_REACH: f32 = 32.0;
+const SHADOW_PENUMBRA_SEARCH_TAPS: u32 = 24u;
+const SHADOW_PENUMBRA_FILTER_TAPS: u32 = 32u;
+
+// Sample `index` of `count`, evenly over the unit disk along a golden-angle spiral (Vogel 1979).
+fn shadow_disk(index: u32, count: u32) -> vec2<f32> {
+    let radius = sqrt((f32(index) + 0.5) / f32(count));
+    let angle = f32(index) * 2.399963;
+    return radius * vec2<f32>(cos(angle), sin(angle));
+}
+
+// Sample `index` of `count` for the search: closer together toward the middle, where alone low occluders count. z is the area
+// that it stands for, up to a factor: radius t^1.5 at t = (index + 1/2) / count covers t^1.5 * t^0.5 of area per step.
+fn shadow_search_disk(index: u32, count: u32) -> vec3<f32> {
+    let t = (f32(index) + 0.5) / f32(count);
+    let angle = f32(index) * 2.399963;
+    return vec3<f32>(t * sqrt(t) * vec2<f32>(cos(angle), sin(angle)), t * t);
+}
+
+// Sum of depth differences, and number, of the occluders among four texels that can hide a part of the light: x and y.
+fn shadow_occluders(
+    map: texture_depth_2d_array,
+    map_sampler: sampler,
+    receiver: ShadowReceiver,
+    first: vec2<f32>,
+) -> vec2<f32> {
+    let corner = (first + 1.0) / receiver.map_size;
+    let depths = textureGather(map, map_sampler, corner, receiver.layer).wzxy;
+    let nearer = depths - shadow_references(receiver, first);
+    let height = depths - receiver.depth;
+    // Within the disk that an occluder of this height spreads, and half a texel more for its own size.
+    let x = abs(vec4<f32>(0.0, 1.0, 0.0, 1.0) + first.x + 0.5 - receiver.texel.x) - 0.5;
+    let y = abs(vec4<f32>(0.0, 0.0, 1.0, 1.0) + first.y + 0.5 - receiver.texel.y) - 0.5;
+    let across = max(x, vec4<f32>(0.0)) / receiver.penumbra.x;
+    let down = max(y, vec4<f32>(0.0)) / receiver.penumbra.y;
+    let within = across * across + down * down <= height * height;
+    let counts = select(vec4<f32>(0.0), vec4<f32>(1.0), (nearer > vec4<f32>(0.0)) & within);
+    return vec2<f32>(dot(counts, height), dot(counts, vec4<f32>(1.0)));
+}
+
+fn shadow_filter_penumbra(
+    map: texture_depth_2d_array,
+    map_sampler: sampler,
+    receiver: ShadowReceiver,
+) -> f32 {
+    let reach = vec2<f32>(SHADOW_PENUMBRA_REACH);
+    let widest = clamp(receiver.penumbra * (1.0 - receiver.depth), vec2<f32>(1.0), reach);
+    var found = vec2<f32>(0.0);
+    for (var i = 0u; i < SHADOW_PENUMBRA_SEARCH_TAPS; i++) {
+        let sample = shadow_search_disk(i, SHADOW_PENUMBRA_SEARCH_TAPS);
+        let first = floor(receiver.texel + sample.xy * widest - 0.5);
+        found += sample.z * shadow_occluders(map, map_sampler, receiver, first);
+    }
+    if found.y == 0.0 {
+        return 1.0;
+    }
+    let radius = min(receiver.penumbra * (found.x / found.y), reach);
+    let hard = shadow_filter_tent_narrow(map, map_sampler, receiver);
+    if max(radius.x, radius.y) < 1.0 {
+        return hard;
+    }
+    var lit = 0.0;
+    for (var i = 0u; i < SHADOW_PENUMBRA_FILTER_TAPS; i++) {
+        let place = receiver.texel + shadow_disk(i, SHADOW_PENUMBRA_FILTER_TAPS) * radius - 0.5;
+        let first = floor(place);
+        let s = place - first;
+        let block = shadow_gather(map, map_sampler, receiver, first);
+        let rows = mix(block.xz, block.yw, s.x);
+        lit += mix(rows.x, rows.y, s.y);
+    }
+    // From the hard filter at one texel to the disk at two.
+    let share = clamp(max(radius.x, radius.y) - 1.0, 0.0, 1.0);
+    return mix(hard, lit / f32(SHADOW_PENUMBRA_FILTER_TAPS), share);
+}
