@@ -91,12 +91,7 @@ impl LightMaps {
         };
         Ok(Self {
             map,
-            recorder: Recorder::new(
-                device,
-                label,
-                layers,
-                descriptor.selection == Selection::CubeFace && !descriptor.indexed,
-            )?,
+            recorder: Recorder::new(device, label, layers)?,
             uniforms: UploadBuffer::new(
                 device,
                 &format!("{label} views"),
@@ -194,7 +189,7 @@ impl LightMaps {
         self.uniforms.commit(encoder, upload);
         self.report.passes = self
             .recorder
-            .record(device, encoder, &self.map, prepared, &mut views, casters);
+            .record(encoder, &self.map, prepared, &mut views, casters);
         self.uniform_values = uniform_values;
         self.spare = std::mem::replace(&mut self.views, views);
         self.fill_report(&layers, casters.len() as u32);

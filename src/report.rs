@@ -56,8 +56,7 @@ impl ViewReport {
 pub struct ShadowReport {
     /// One entry per view, in the order of layers.
     pub views: Vec<ViewReport>,
-    /// Depth passes recorded: one per drawn view, or a single one for the six faces of a point light where that is cheaper
-    /// (`Features::MULTIVIEW`, and most casters touching most faces).
+    /// Depth passes recorded: one per drawn view.
     pub passes: u32,
     /// Device memory of the depth texture.
     pub bytes_held: u64,

@@ -32,13 +32,6 @@ macro_rules! module {
 pub(crate) const CASTER: ShaderModule = module!("caster", "caster.wgsl", []);
 pub(crate) const CASTER_BUILTIN: ShaderModule =
     module!("caster_builtin", "pass/caster_builtin.wgsl", ["caster"]);
-pub(crate) const CASTER_MULTIVIEW: ShaderModule =
-    module!("caster_multiview", "caster_multiview.wgsl", []);
-pub(crate) const CASTER_BUILTIN_MULTIVIEW: ShaderModule = module!(
-    "caster_builtin_multiview",
-    "pass/caster_builtin_multiview.wgsl",
-    ["caster_multiview"]
-);
 pub(crate) const DEBUG_VIEW: ShaderModule =
     module!("debug_view", "pass/debug_view.wgsl", ["view", "cube_face"]);
 
@@ -82,8 +75,6 @@ pub const MODULES: &[ShaderModule] = &[
     module!("normal", "normal.wgsl", []),
     CASTER,
     CASTER_BUILTIN,
-    CASTER_MULTIVIEW,
-    CASTER_BUILTIN_MULTIVIEW,
     DEBUG_VIEW,
 ];
 

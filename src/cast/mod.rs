@@ -8,12 +8,10 @@
 //! depth_map.rs    the layered depth texture
 //! recorder.rs     which views need drawing, and the passes
 //! upload.rs       uniform buffers written in command order
-//! cube_pass.rs    six faces in one pass
 //! device_scope.rs device errors as values
 //! ```
 
 mod caster;
-mod cube_pass;
 mod depth_map;
 mod device_scope;
 mod mesh;

@@ -1,8 +1,8 @@
 //! How one kind of caster is laid out and shaded: the depth-only pipelines.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
-use crate::cast::pipeline_build::{self, BuiltIn};
+use crate::cast::pipeline_build::both_windings;
 use crate::cast::{DeviceRefusal, capture_device_errors};
 use crate::error::CasterError;
 
@@ -132,11 +132,9 @@ pub struct CasterPipeline {
 #[derive(Debug)]
 struct Variants {
     /// As described, and with the other winding; the same where nothing is culled.
-    plain: [wgpu::RenderPipeline; 2],
-    /// The same for six views in one pass, made when first wanted; none where the device refuses.
-    six_views: OnceLock<Option<[wgpu::RenderPipeline; 2]>>,
+    by_winding: [wgpu::RenderPipeline; 2],
     /// None for the engine's own WGSL.
-    built_in: Option<BuiltIn>,
+    built_in: Option<(PositionAttribute, ModelTransform)>,
 }
 
 impl PartialEq for CasterPipeline {
@@ -160,18 +158,11 @@ impl CasterPipeline {
             CasterVertex::BuiltIn { position, model } => {
                 check_position(&position)?;
                 check_model(&model)?;
-                Some(BuiltIn {
-                    position,
-                    model,
-                    cull: descriptor.cull,
-                    front_face: descriptor.front_face,
-                    topology: descriptor.topology,
-                    strip_index_format: descriptor.strip_index_format,
-                })
+                Some((position, model))
             }
             CasterVertex::Wgsl { .. } => None,
         };
-        let plain = capture_device_errors(device, || pipeline_build::plain(device, descriptor))
+        let by_winding = capture_device_errors(device, || both_windings(device, descriptor))
             .map_err(|refusal| CasterError::Device {
                 message: match refusal {
                     DeviceRefusal::OutOfMemory => "out of memory".to_owned(),
@@ -180,8 +171,7 @@ impl CasterPipeline {
             })?;
         Ok(Self {
             variants: Arc::new(Variants {
-                plain,
-                six_views: OnceLock::new(),
+                by_winding,
                 built_in,
             }),
             mirrored: false,
@@ -190,7 +180,7 @@ impl CasterPipeline {
 
     /// The wgpu pipeline, for engines that record depth passes of their own.
     pub fn wgpu_pipeline(&self) -> &wgpu::RenderPipeline {
-        &self.variants.plain[usize::from(self.mirrored)]
+        &self.variants.by_winding[usize::from(self.mirrored)]
     }
 
     /// The same pipeline for casters whose transform mirrors (negative determinant), so that culling takes the same faces.
@@ -205,26 +195,12 @@ impl CasterPipeline {
     pub fn model_transform(&self) -> ModelTransform {
         self.variants
             .built_in
-            .map_or(ModelTransform::Identity, |built_in| built_in.model)
-    }
-
-    /// The pipeline that draws the six faces of a cube in one pass; none for the engine's own WGSL. Asked only on devices with
-    /// `Features::MULTIVIEW`.
-    pub(crate) fn six_views(&self, device: &wgpu::Device) -> Option<&wgpu::RenderPipeline> {
-        let built_in = self.variants.built_in.as_ref()?;
-        self.variants
-            .six_views
-            .get_or_init(|| {
-                capture_device_errors(device, || pipeline_build::six_views(device, built_in)).ok()
-            })
-            .as_ref()
-            .map(|pipelines| &pipelines[usize::from(self.mirrored)])
+            .map_or(ModelTransform::Identity, |(_, model)| model)
     }
 
     /// Bytes that a vertex buffer must have to hold `vertices`; 0 where the engine lays its own vertices out.
     pub(crate) fn vertex_bytes(&self, vertices: &std::ops::Range<u32>) -> u64 {
-        self.variants.built_in.map_or(0, |built_in| {
-            let position = built_in.position;
+        self.variants.built_in.map_or(0, |(position, _)| {
             let last = vertices.end.saturating_sub(1);
             if vertices.is_empty() {
                 0

@@ -1,34 +1,21 @@
 //! The wgpu side of caster pipelines: layouts, vertex state, depth state.
 
-use std::num::NonZeroU32;
-
 use crate::cast::DEPTH_FORMAT;
 use crate::cast::pipeline::{
     CasterPipelineDescriptor, CasterVertex, ModelTransform, PositionAttribute,
 };
-use crate::cast::recorder::{FACE_COUNT, VIEW_UNIFORM_BYTES};
+use crate::cast::recorder::VIEW_UNIFORM_BYTES;
 use crate::shader;
 
-/// All that a pipeline with the built-in vertex stage is made of.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct BuiltIn {
-    pub position: PositionAttribute,
-    pub model: ModelTransform,
-    pub cull: Option<wgpu::Face>,
-    pub front_face: wgpu::FrontFace,
-    pub topology: wgpu::PrimitiveTopology,
-    pub strip_index_format: Option<wgpu::IndexFormat>,
-}
-
-/// One view a pass, for the winding described and for the other.
-pub(crate) fn plain(
+/// The pipeline as described, and with the other winding; the same where nothing is culled.
+pub(crate) fn both_windings(
     device: &wgpu::Device,
     descriptor: &CasterPipelineDescriptor<'_>,
 ) -> [wgpu::RenderPipeline; 2] {
     match descriptor.vertex {
         CasterVertex::BuiltIn { position, model } => {
             let source = [shader::CASTER.source, shader::CASTER_BUILTIN.source].concat();
-            built_in(device, descriptor, &source, &position, &model, None)
+            built_in(device, descriptor, &source, &position, &model)
         }
         CasterVertex::Wgsl {
             source,
@@ -44,68 +31,23 @@ pub(crate) fn plain(
                 fragment_entry,
                 buffers,
                 bind_group_layouts,
-                multiview_mask: None,
             };
-            both_windings(device, descriptor, &stages)
+            create_both(device, descriptor, &stages)
         }
     }
 }
 
-/// Six views a pass.
-pub(crate) fn six_views(device: &wgpu::Device, built: &BuiltIn) -> [wgpu::RenderPipeline; 2] {
-    let descriptor = CasterPipelineDescriptor {
-        label: Some("shadow caster, six views"),
-        vertex: CasterVertex::BuiltIn {
-            position: built.position,
-            model: built.model,
-        },
-        cull: built.cull,
-        front_face: built.front_face,
-        topology: built.topology,
-        strip_index_format: built.strip_index_format,
-    };
-    let source = [
-        shader::CASTER_MULTIVIEW.source,
-        shader::CASTER_BUILTIN_MULTIVIEW.source,
-    ]
-    .concat();
-    let mask = NonZeroU32::new((1 << FACE_COUNT) - 1);
-    built_in(
-        device,
-        &descriptor,
-        &source,
-        &built.position,
-        &built.model,
-        mask,
-    )
-}
-
 /// Layout of bind group 0: the view being rendered, chosen by a dynamic offset.
 pub(crate) fn view_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    uniform_layout(device, "shadow caster view", VIEW_UNIFORM_BYTES, true)
-}
-
-/// Layout of bind group 0 where six views are rendered at once.
-pub(crate) fn six_views_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let bytes = VIEW_UNIFORM_BYTES * u64::from(FACE_COUNT);
-    uniform_layout(device, "shadow caster faces", bytes, false)
-}
-
-fn uniform_layout(
-    device: &wgpu::Device,
-    label: &str,
-    bytes: u64,
-    has_dynamic_offset: bool,
-) -> wgpu::BindGroupLayout {
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some(label),
+        label: Some("shadow caster view"),
         entries: &[wgpu::BindGroupLayoutEntry {
             binding: 0,
             visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
             ty: wgpu::BindingType::Buffer {
                 ty: wgpu::BufferBindingType::Uniform,
-                has_dynamic_offset,
-                min_binding_size: wgpu::BufferSize::new(bytes),
+                has_dynamic_offset: true,
+                min_binding_size: wgpu::BufferSize::new(VIEW_UNIFORM_BYTES),
             },
             count: None,
         }],
@@ -118,7 +60,6 @@ fn built_in(
     source: &str,
     position: &PositionAttribute,
     model: &ModelTransform,
-    multiview_mask: Option<NonZeroU32>,
 ) -> [wgpu::RenderPipeline; 2] {
     let position_attribute = [wgpu::VertexAttribute {
         format: position.format,
@@ -136,14 +77,13 @@ fn built_in(
         fragment_entry: None,
         buffers: std::slice::from_ref(&positions),
         bind_group_layouts: &[],
-        multiview_mask,
     };
     let ModelTransform::InstanceMatrix {
         array_stride,
         offset,
     } = *model
     else {
-        return both_windings(device, descriptor, &stages);
+        return create_both(device, descriptor, &stages);
     };
     let columns = [0, 1, 2, 3].map(|column| wgpu::VertexAttribute {
         format: wgpu::VertexFormat::Float32x4,
@@ -158,7 +98,7 @@ fn built_in(
     let buffers = [positions.clone(), matrices];
     stages.vertex_entry = "shadow_caster_vertex_instance";
     stages.buffers = &buffers;
-    both_windings(device, descriptor, &stages)
+    create_both(device, descriptor, &stages)
 }
 
 /// What differs between the built-in stages and the engine's own.
@@ -168,10 +108,9 @@ struct Stages<'a> {
     fragment_entry: Option<&'a str>,
     buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
     bind_group_layouts: &'a [Option<&'a wgpu::BindGroupLayout>],
-    multiview_mask: Option<NonZeroU32>,
 }
 
-fn both_windings(
+fn create_both(
     device: &wgpu::Device,
     descriptor: &CasterPipelineDescriptor<'_>,
     stages: &Stages<'_>,
@@ -181,10 +120,7 @@ fn both_windings(
         label: Some(label),
         source: wgpu::ShaderSource::Wgsl(stages.source.into()),
     });
-    let view_layout = match stages.multiview_mask {
-        None => view_layout(device),
-        Some(_) => six_views_layout(device),
-    };
+    let view_layout = view_layout(device);
     let mut groups = vec![Some(&view_layout)];
     groups.extend_from_slice(stages.bind_group_layouts);
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -223,7 +159,7 @@ fn both_windings(
                 compilation_options: Default::default(),
                 targets: &[],
             }),
-            multiview_mask: stages.multiview_mask,
+            multiview_mask: None,
             cache: None,
         })
     };

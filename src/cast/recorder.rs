@@ -2,7 +2,6 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::cast::cube_pass::CubePass;
 use crate::cast::pipeline_build::view_layout;
 use crate::cast::upload::{PendingUpload, UploadBuffer};
 use crate::cast::{CasterPipeline, DepthMap, Revision, ShadowCaster};
@@ -17,9 +16,6 @@ pub(crate) struct CasterViewUniform {
     pub anchor_render: [f32; 3],
     pub map_size: f32,
 }
-
-/// Faces of a cube.
-pub(crate) const FACE_COUNT: u32 = 6;
 
 pub(crate) const VIEW_UNIFORM_BYTES: u64 = size_of::<CasterViewUniform>() as u64;
 
@@ -87,14 +83,11 @@ pub(crate) struct Recorder {
     stride: u64,
     bind_group: wgpu::BindGroup,
     contents: Vec<Content>,
-    /// Where the layers are the faces of a cube and the device can draw them at once.
-    cube: Option<CubePass>,
 }
 
 /// Everything that could fail, done before the encoder is touched.
 pub(crate) struct PreparedViews {
-    views: Option<PendingUpload>,
-    faces: Option<PendingUpload>,
+    upload: Option<PendingUpload>,
 }
 
 impl CasterViewUniform {
@@ -108,13 +101,8 @@ impl CasterViewUniform {
 }
 
 impl Recorder {
-    /// For maps of `layers` layers; `is_cube` where they are the six faces of one.
-    pub fn new(
-        device: &wgpu::Device,
-        label: &str,
-        layers: u32,
-        is_cube: bool,
-    ) -> Result<Self, ShadowError> {
+    /// For maps of `layers` layers.
+    pub fn new(device: &wgpu::Device, label: &str, layers: u32) -> Result<Self, ShadowError> {
         let alignment = u64::from(device.limits().min_uniform_buffer_offset_alignment);
         let stride = VIEW_UNIFORM_BYTES.next_multiple_of(alignment);
         let uniforms = UploadBuffer::new(
@@ -140,11 +128,6 @@ impl Recorder {
             stride,
             bind_group,
             contents: vec![Content::default(); layers as usize],
-            cube: if is_cube {
-                CubePass::new(device, label)?
-            } else {
-                None
-            },
         })
     }
 
@@ -166,44 +149,30 @@ impl Recorder {
             bytes[start..][..size_of_val(&uniform)].copy_from_slice(bytemuck::bytes_of(&uniform));
         }
         Ok(PreparedViews {
-            views: self.uniforms.prepare(device, &bytes)?,
-            faces: match &self.cube {
-                Some(cube) => cube.prepare(device, views)?,
-                None => None,
-            },
+            upload: self.uniforms.prepare(device, &bytes)?,
         })
     }
 
-    /// Records what the layers do not hold already: a pass a view, or one pass for six faces. Returns the number of passes.
+    /// Records a pass for each view whose layer does not hold it already; returns the number of passes.
     pub fn record(
         &mut self,
-        device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
         map: &DepthMap,
         prepared: PreparedViews,
         views: &mut [ViewDraws],
         casters: &[&dyn ShadowCaster],
     ) -> u32 {
-        self.uniforms.commit(encoder, prepared.views);
-        if let Some(cube) = &mut self.cube {
-            cube.commit(encoder, prepared.faces);
-        }
-        for draws in views.iter_mut() {
+        self.uniforms.commit(encoder, prepared.upload);
+        let mut passes = 0;
+        for draws in views {
             let content = &mut self.contents[draws.view.layer() as usize];
             draws.drawn = !draws.deferred && content.replace(draws, casters);
-        }
-        if let (Some(cube), [first, ..]) = (&mut self.cube, &*views) {
-            let one_pass = cube.is_worth_it(device, views, casters);
-            if one_pass {
-                let faces = map.array_view();
-                cube.draw(device, encoder, &self.label, faces, first, casters);
-                return 1;
+            if draws.drawn {
+                self.draw(encoder, map, draws, casters);
+                passes += 1;
             }
         }
-        let drawn = views.iter().filter(|draws| draws.drawn);
-        drawn
-            .map(|draws| self.draw(encoder, map, draws, casters))
-            .count() as u32
+        passes
     }
 
     fn draw(
@@ -240,8 +209,5 @@ impl Recorder {
     pub fn invalidate(&mut self) {
         self.contents.fill(Content::default());
         self.uniforms.invalidate();
-        if let Some(cube) = &mut self.cube {
-            cube.invalidate();
-        }
     }
 }
