@@ -180,6 +180,26 @@ pub enum CasterError {
         /// Bytes that the buffer has.
         got: u64,
     },
+    /// A range of indices or vertices that holds nothing, or ends before it begins.
+    #[error("{field} must not be empty, got {start}..{end}")]
+    EmptyRange {
+        /// Path of the field.
+        field: &'static str,
+        /// First of the range.
+        start: u32,
+        /// One past the last.
+        end: u32,
+    },
+    /// Indices of another format than the pipeline's strips restart by.
+    #[error(
+        "MeshCasterDescriptor::indices.format must be the strip index format of the pipeline ({expected:?}), got {format:?}"
+    )]
+    IndexFormat {
+        /// The pipeline's strip index format.
+        expected: Option<wgpu::IndexFormat>,
+        /// The mesh's index format.
+        format: wgpu::IndexFormat,
+    },
     /// A buffer that was created without the usage it is bound with.
     #[error("{field} must be created with {usage}")]
     BufferUsage {
@@ -196,7 +216,7 @@ pub enum CasterError {
 pub enum BindingsError {
     /// A light's name becomes part of WGSL identifiers.
     #[error(
-        "ShadowBindingsDescriptor::lights: name must be a lower-case WGSL identifier ([a-z][a-z0-9_]*, no `__`, no `_` or digit at the end), got {name:?}"
+        "ShadowBindingsDescriptor::lights: name must be a lower-case WGSL identifier ([a-z][a-z0-9_]*, no `__`, no `_` or digit at the end, no `map_` or `views_` in front, none of the library's own), got {name:?}"
     )]
     Name {
         /// The name asked for.

@@ -6,38 +6,36 @@
 //! ```text
 //! steps.rs            what each step does, and what one sees
 //! scene.rs            floor, cubes and sun
-//! camera.rs           where they are looked at from
-//! mesh.rs             what they are made of
+//! viewpoint.rs        where they are looked at from
 //! lookup.rs           how the shader asks for visibility: by the library, or by the textbook's mistake
 //! painter.rs          the passes that draw the scene
 //! rays.rs             the scene as rays see it, on the CPU
 //! truth.rs            how far a picture is from what is truly lit
-//! gpu.rs              a device without a window, and pictures from it
-//! scene.wgsl          Blinn-Phong
+//! scene.wgsl          the fragment stages
 //! out_of_range.wgsl   the textbook's mistake
+//! ../common           device, meshes and Blinn-Phong
 //! ```
 
-mod camera;
-mod gpu;
+#[path = "../common/mod.rs"]
+mod common;
 mod lookup;
-mod mesh;
 mod painter;
 mod rays;
 mod scene;
 mod steps;
 mod truth;
+mod viewpoint;
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
-use wgpu_shadows::{DebugView, DirectionalShadow, ShadowCaster};
+use wgpu_shadows::{DebugPicture, DirectionalShadow, ShadowCaster};
 
-use camera::Camera;
-use gpu::Gpu;
+use common::gpu::Gpu;
+use common::{arguments, map_picture, picture};
 use lookup::Lookup;
-use painter::Painter;
 use scene::Scene;
 use steps::{Show, Step};
 use truth::Truth;
@@ -51,18 +49,12 @@ struct Arguments {
 }
 
 fn main() -> ExitCode {
-    match run(&Arguments::parse().folder) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("textbook: {error}");
-            ExitCode::FAILURE
-        }
-    }
+    arguments::run("textbook", |arguments: Arguments| run(&arguments.folder))
 }
 
 fn run(folder: &Path) -> Result<(), Box<dyn Error>> {
     let gpu = Gpu::new()?;
-    std::fs::create_dir_all(folder)?;
+    picture::make_folder(folder)?;
     let scene = Scene::new(&gpu.device);
     let mut figures = Vec::new();
     for step in steps::steps() {
@@ -81,7 +73,7 @@ fn run(folder: &Path) -> Result<(), Box<dyn Error>> {
 
 /// Draws the picture of `step` and says how far it is from the truth.
 fn draw(gpu: &Gpu, scene: &Scene, step: &Step, path: &Path) -> Result<String, Box<dyn Error>> {
-    let camera = Camera::new(step.viewpoint, painter::SIZE);
+    let camera = step.viewpoint.camera(painter::SIZE);
     let meshes = scene.casters(&gpu.device, step.cull)?;
     let casters: Vec<&dyn ShadowCaster> = meshes.iter().map(|mesh| mesh as _).collect();
     let mut sun = DirectionalShadow::new(&gpu.device, &step.shadow)?;
@@ -97,8 +89,8 @@ fn draw(gpu: &Gpu, scene: &Scene, step: &Step, path: &Path) -> Result<String, Bo
         Show::OutOfRangeMistake => Lookup::by_mistake(&gpu.device, &sun)?,
         Show::DepthMap => return draw_map(gpu, scene, &sun, encoder, path),
     };
-    let painted = Painter::new(gpu, scene, &camera).paint(encoder, &lookup)?;
-    painted.picture.save(path)?;
+    let painted = painter::paint(gpu, scene, &camera, &lookup, encoder)?;
+    picture::save(path, &painted.picture, painter::SIZE)?;
     let truth = Truth::new(scene, &camera, painter::SIZE);
     Ok(truth.compare(&painted.visibility).to_string())
 }
@@ -108,34 +100,14 @@ fn draw_map(
     gpu: &Gpu,
     scene: &Scene,
     sun: &DirectionalShadow,
-    mut encoder: wgpu::CommandEncoder,
+    encoder: wgpu::CommandEncoder,
     path: &Path,
 ) -> Result<String, Box<dyn Error>> {
-    let format = wgpu::TextureFormat::Rgba8Unorm;
     let view = sun.views().next().ok_or("nothing casts a shadow")?;
-    let target = gpu.target(format, [view.map_size(); 2], 1);
-    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some("depth map"),
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: &target.create_view(&Default::default()),
-            depth_slice: None,
-            resolve_target: None,
-            ops: Default::default(),
-        })],
-        ..Default::default()
-    });
-    let debug_view = DebugView::new(&gpu.device, format)?;
-    debug_view.draw(
-        &gpu.device,
-        &mut pass,
-        sun.source(),
-        wgpu_shadows::DebugPicture::Layer(view.layer()),
-    )?;
-    drop(pass);
-
-    let pixels = gpu.read(encoder, &target)?;
-    let color = image::ColorType::Rgba8;
-    image::save_buffer(path, &pixels, target.width(), target.height(), color)?;
+    let size = [view.map_size(); 2];
+    let layer = DebugPicture::Layer(view.layer());
+    let pixels = map_picture::draw(gpu, encoder, sun.source(), layer, size)?;
+    picture::save(path, &pixels, size)?;
     let wrong = 100.0 * truth::compare_map(scene, view, &pixels);
     Ok(format!(
         "{wrong:6.2} % of the texels are more than one grey level off"

@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec3};
 
-use crate::mesh::Object;
+use crate::common::mesh::Object;
 use crate::scene::Scene;
 
 /// A way through the scene: `origin + t * direction`.

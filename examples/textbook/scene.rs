@@ -2,13 +2,13 @@
 
 use glam::{DVec3, Mat4, Quat, Vec3};
 use wgpu_shadows::{
-    Aabb, CameraView, CasterError, CasterPipeline, CasterPipelineDescriptor, CasterVertex,
-    Coverage, DirectionalFrame, DirectionalLight, MeshCaster, MeshCasterDescriptor, MeshIndices,
+    Aabb, CasterError, CasterPipeline, CasterPipelineDescriptor, CasterVertex, Coverage,
+    DirectionalFrame, DirectionalLight, MeshCaster, MeshCasterDescriptor, MeshIndices,
     ModelTransform, PositionAttribute, ShadowCaster,
 };
 
-use crate::camera::Camera;
-use crate::mesh::{Instance, Object, Vertex, cube, square};
+use crate::common::camera::Camera;
+use crate::common::mesh::{Instance, Object, Vertex, cube, square};
 
 /// What a step's map covers.
 #[derive(Clone, Copy)]
@@ -96,11 +96,11 @@ impl Scene {
                 let descriptor = MeshCasterDescriptor {
                     label: Some("textbook caster"),
                     pipeline: &pipeline,
-                    vertices: &object.vertices,
+                    vertices: &object.mesh.vertices,
                     indices: MeshIndices::None {
-                        vertices: 0..object.vertex_count,
+                        vertices: 0..object.mesh.vertex_count,
                     },
-                    bounds_model: object.bounds_model,
+                    bounds_model: object.mesh.bounds_model,
                     render_from_model: object.render_from_model,
                 };
                 MeshCaster::new(device, &descriptor)
@@ -120,10 +120,7 @@ impl Scene {
             light: DirectionalLight::new(-self.toward_light),
             coverage: match region {
                 MapRegion::FixedBox => Coverage::Bounds(FIXED_BOX),
-                MapRegion::Camera => Coverage::Camera(CameraView::new(
-                    camera.view_from_render,
-                    camera.clip_from_view,
-                )),
+                MapRegion::Camera => Coverage::Camera(camera.for_shadows()),
             },
             casters,
             receivers: &[],

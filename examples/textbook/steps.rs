@@ -2,8 +2,8 @@
 
 use wgpu_shadows::{Bias, CascadeSplit, DirectionalShadowDescriptor, Filter};
 
-use crate::camera::Viewpoint;
 use crate::scene::MapRegion;
+use crate::viewpoint::Viewpoint;
 
 /// Texels per side, as in the tutorial.
 const MAP_SIZE: u32 = 1024;

@@ -6,7 +6,7 @@ use std::fmt;
 use glam::{DMat4, DVec3, Mat4};
 use wgpu_shadows::ShadowView;
 
-use crate::camera::Camera;
+use crate::common::camera::Camera;
 use crate::rays::{Ray, World};
 use crate::scene::Scene;
 

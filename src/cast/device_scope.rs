@@ -23,14 +23,15 @@ pub(crate) fn capture_device_errors<T>(
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let made = create();
-    let refusals = [
-        poll_once(validation.pop()),
-        poll_once(memory.pop()),
-        poll_once(internal.pop()),
-    ];
-    match refusals.into_iter().flatten().flatten().next() {
+    let invalid = poll_once(validation.pop()).flatten();
+    let out_of_memory = poll_once(memory.pop()).flatten();
+    let failed = poll_once(internal.pop()).flatten();
+    // Out of memory comes first: what is then made of the missing object is invalid only in consequence.
+    if out_of_memory.is_some() {
+        return Err(DeviceRefusal::OutOfMemory);
+    }
+    match invalid.or(failed) {
         None => Ok(made),
-        Some(wgpu::Error::OutOfMemory { .. }) => Err(DeviceRefusal::OutOfMemory),
         Some(error) => Err(DeviceRefusal::Refused(error.to_string())),
     }
 }

@@ -222,17 +222,30 @@ fn check_buffers(descriptor: &MeshCasterDescriptor<'_>) -> Result<(), CasterErro
         });
     }
     match &descriptor.indices {
-        MeshIndices::None { vertices: range } => require(
-            "MeshCasterDescriptor::vertices",
-            descriptor.pipeline.vertex_bytes(range),
-            vertices.size(),
-        ),
+        MeshIndices::None { vertices: range } => {
+            check_range("MeshCasterDescriptor::indices.vertices", range)?;
+            require(
+                "MeshCasterDescriptor::vertices",
+                descriptor.pipeline.vertex_bytes(range).max(1),
+                vertices.size(),
+            )
+        }
         MeshIndices::Buffer {
             buffer,
             format,
             indices,
             ..
         } => {
+            check_range("MeshCasterDescriptor::indices.indices", indices)?;
+            require("MeshCasterDescriptor::vertices", 1, vertices.size())?;
+            if let Some(expected) = descriptor.pipeline.strip_index_format() {
+                if expected != Some(*format) {
+                    return Err(CasterError::IndexFormat {
+                        expected,
+                        format: *format,
+                    });
+                }
+            }
             if !buffer.usage().contains(wgpu::BufferUsages::INDEX) {
                 return Err(CasterError::BufferUsage {
                     field: "MeshCasterDescriptor::indices.buffer",
@@ -249,6 +262,18 @@ fn check_buffers(descriptor: &MeshCasterDescriptor<'_>) -> Result<(), CasterErro
                 buffer.size(),
             )
         }
+    }
+}
+
+fn check_range(field: &'static str, range: &Range<u32>) -> Result<(), CasterError> {
+    if range.is_empty() {
+        Err(CasterError::EmptyRange {
+            field,
+            start: range.start,
+            end: range.end,
+        })
+    } else {
+        Ok(())
     }
 }
 

@@ -135,6 +135,8 @@ struct Variants {
     by_winding: [wgpu::RenderPipeline; 2],
     /// None for the engine's own WGSL.
     built_in: Option<(PositionAttribute, ModelTransform)>,
+    topology: wgpu::PrimitiveTopology,
+    strip_index_format: Option<wgpu::IndexFormat>,
 }
 
 impl PartialEq for CasterPipeline {
@@ -173,6 +175,8 @@ impl CasterPipeline {
             variants: Arc::new(Variants {
                 by_winding,
                 built_in,
+                topology: descriptor.topology,
+                strip_index_format: descriptor.strip_index_format,
             }),
             mirrored: false,
         })
@@ -196,6 +200,12 @@ impl CasterPipeline {
         self.variants
             .built_in
             .map_or(ModelTransform::Identity, |(_, model)| model)
+    }
+
+    /// For strips, the format that indices must have; none where any will do.
+    pub(crate) fn strip_index_format(&self) -> Option<Option<wgpu::IndexFormat>> {
+        let is_strip = self.variants.topology == wgpu::PrimitiveTopology::TriangleStrip;
+        is_strip.then_some(self.variants.strip_index_format)
     }
 
     /// Bytes that a vertex buffer must have to hold `vertices`; 0 where the engine lays its own vertices out.

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::fit::LightBox;
-use crate::fit::ladder::rung_with_hysteresis;
+use crate::fit::ladder::{rung_up, rung_with_hysteresis};
 
 /// Steps into which a depth range is divided; its ends lie on whole steps, so that they rarely move.
 const DEPTH_STEPS: f64 = 64.0;
@@ -63,8 +63,12 @@ fn fit_axis(request: &WindowRequest, held: Option<&MapWindow>, axis: usize) -> (
     let (low, high) = (request.min[axis], request.max[axis]);
     let size = f64::from(request.map_size);
     let margin = f64::from(request.margin_texels);
-    // One texel is lost to snapping. A map smaller than its margins keeps one texel and a window that is all margin.
-    let usable = (size - 2.0 * margin - 1.0).max(1.0);
+    // One texel is lost to snapping. A map that is all margin is too small to snap: it is centred on what it covers.
+    let usable = size - 2.0 * margin - 1.0;
+    if usable < 1.0 {
+        let texel = rung_up(((high - low) / size).max(request.texel_floor));
+        return ((low + high) * 0.5 - 0.5 * size * texel, texel);
+    }
     let texel_needed = ((high - low) / usable).max(request.texel_floor);
     let texel = rung_with_hysteresis(texel_needed, held.map(|held| held.texel[axis]));
     let whole_texel = 2.0 * request.whole / size;
@@ -226,6 +230,7 @@ mod tests {
             request.map_size = map_size;
             let window = MapWindow::fit(&request, None);
             assert!(window.texel.min_element() > 0.0 && window.min.is_finite());
+            assert!(window.min.max_element() < 2.5 && window.max().min_element() > 2.5);
         }
         let range = DepthRange::fit(3.0, 3.0, 1e-6, None);
         assert!(range.far < 3.0 && range.near >= 3.0 && range.length() > 0.0);

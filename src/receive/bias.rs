@@ -92,16 +92,19 @@ impl Bias {
         }
     }
 
-    /// Height in world units above which a caster that lies on a surface always casts onto it, at the worst angle of the
-    /// light: the size of the gap that the bias can leave.
+    /// Height in world units above which a caster that lies on a surface always casts its full shadow onto it, at the worst
+    /// angle of the light: the size of the gap that the bias can leave.
     pub(crate) fn worst_gap_world(self, filter: Filter, view: &ShadowView) -> f32 {
         let texel = f64::from(view.texel_size_world().max_element());
         let rounding = view.depth_error_world() + view.position_error_world();
-        let offset = self.offset_texels(filter) + lateral_error_texels(view);
+        // One more reach of the filter: a texel on the side where the surface falls away is compared with the receiver's own
+        // depth, or with its one offset depth, which there lies that much further above the surface.
+        let texels =
+            filter.reach_texels() + self.offset_texels(filter) + lateral_error_texels(view);
         let gap = match self {
             Self::Manual { constant, slope } => f64::from(constant.max(slope)),
             // |nx| + |ny| is at most the square root of two.
-            Self::Auto | Self::NormalOffset => offset * texel * std::f64::consts::SQRT_2 + rounding,
+            Self::Auto | Self::NormalOffset => texels * texel * std::f64::consts::SQRT_2 + rounding,
         };
         gap as f32
     }

@@ -129,10 +129,7 @@ fn check_names(lights: &Lights<'_>) -> Result<(), BindingsError> {
             .chars()
             .all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
         let ends = name.ends_with(|c: char| c.is_ascii_lowercase());
-        // The library's own function names, which a light's must not shadow.
-        let taken = shader::MODULES
-            .iter()
-            .any(|module| module.source.contains(&format!("fn shadow_{name}(")));
+        let taken = is_taken(name);
         if !(starts && body && ends) || name.contains("__") || taken {
             return Err(BindingsError::Name {
                 name: (*name).to_owned(),
@@ -145,6 +142,21 @@ fn check_names(lights: &Lights<'_>) -> Result<(), BindingsError> {
         }
     }
     Ok(())
+}
+
+/// Would `shadow_NAME` meet a name of the library's own: of a module, a sampler, or another light's map or views?
+fn is_taken(name: &str) -> bool {
+    let identifier = format!("shadow_{name}");
+    let in_modules = shader::MODULES.iter().any(|module| {
+        let mut words = module
+            .source
+            .split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+        words.any(|word| word == identifier)
+    });
+    in_modules
+        || ["point_sampler", "comparison_sampler"].contains(&name)
+        || name.starts_with("map_")
+        || name.starts_with("views_")
 }
 
 /// Samplers that the set's filters take, in binding order.

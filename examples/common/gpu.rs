@@ -20,13 +20,19 @@ impl Gpu {
         Ok(Self { device, queue })
     }
 
-    /// A texture to draw to and to read back.
+    /// A texture to draw to and, with one sample a pixel, to read back.
     pub fn target(
         &self,
         format: wgpu::TextureFormat,
         [width, height]: [u32; 2],
         sample_count: u32,
     ) -> wgpu::Texture {
+        // Samples cannot be read back, and on OpenGL a texture that could be copied from would not resolve.
+        let readable = if sample_count == 1 {
+            wgpu::TextureUsages::COPY_SRC
+        } else {
+            wgpu::TextureUsages::empty()
+        };
         self.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("target"),
             size: wgpu::Extent3d {
@@ -38,7 +44,7 @@ impl Gpu {
             sample_count,
             dimension: wgpu::TextureDimension::D2,
             format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | readable,
             view_formats: &[],
         })
     }

@@ -1,16 +1,8 @@
-//! Where the scene is looked at from.
+//! Where a scene is looked at from.
 
 use glam::camera::rh::{proj::directx::perspective_infinite_reverse, view::look_at_mat4};
 use glam::{Mat4, Vec3};
-
-/// A place to look from.
-#[derive(Clone, Copy)]
-pub enum Viewpoint {
-    /// Close to the cubes.
-    Close,
-    /// From afar, with the map's ends in sight.
-    Wide,
-}
+use wgpu_shadows::CameraView;
 
 /// A perspective camera with reversed depth.
 pub struct Camera {
@@ -20,13 +12,13 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// For pictures of `width` by `height` pixels.
-    pub fn new(viewpoint: Viewpoint, [width, height]: [u32; 2]) -> Self {
-        let (eye, target) = match viewpoint {
-            Viewpoint::Close => (Vec3::new(5.8, 3.1, -3.8), Vec3::new(0.75, 0.45, 0.75)),
-            Viewpoint::Wide => (Vec3::new(2.6, 6.0, -11.5), Vec3::new(1.6, 0.0, 0.6)),
-        };
-        let field_of_view_radians = 0.55;
+    /// From `eye` toward `target`, for pictures of `width` by `height` pixels.
+    pub fn new(
+        eye: Vec3,
+        target: Vec3,
+        field_of_view_radians: f32,
+        [width, height]: [u32; 2],
+    ) -> Self {
         let aspect = width as f32 / height as f32;
         Self {
             eye,
@@ -38,5 +30,10 @@ impl Camera {
     /// Clip space from render space.
     pub fn clip_from_render(&self) -> Mat4 {
         self.clip_from_view * self.view_from_render
+    }
+
+    /// The camera as the library takes it.
+    pub fn for_shadows(&self) -> CameraView {
+        CameraView::new(self.view_from_render, self.clip_from_view)
     }
 }

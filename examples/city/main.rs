@@ -1,0 +1,97 @@
+//! A town of some thousand buildings under four cascades: what a sun costs, and where its texels go.
+//!
+//! `cargo run --release --example city -- [FOLDER] --frames N` flies through its streets and over its roofs in N pictures, into
+//! `target/city` or the folder named, with a table of what each frame's shadows cost; then draws which cascade serves which
+//! pixel of the first frame, and the four maps.
+//!
+//! ```text
+//! town.rs          streets, blocks, houses and towers
+//! plot.rs          what stands on one block
+//! random.rs        the same town every time
+//! building.rs      a building as a caster
+//! flight.rs        where the camera is
+//! sun.rs           the sun's shadows, and the pictures that they are in
+//! table.rs         what the frames cost
+//! city.wgsl        the fragment stages
+//! ../common        device, meshes and Blinn-Phong
+//! ```
+
+mod building;
+#[path = "../common/mod.rs"]
+mod common;
+mod flight;
+mod plot;
+mod random;
+mod sun;
+mod table;
+mod town;
+
+use std::error::Error;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Parser;
+use wgpu_shadows::ShadowCaster;
+
+use common::gpu::Gpu;
+use common::{arguments, picture};
+use sun::{Show, Sun};
+use table::Table;
+use town::Town;
+
+/// Flies through a town with shadows.
+#[derive(Parser)]
+struct Arguments {
+    /// Folder for the pictures.
+    #[arg(default_value = "target/city")]
+    folder: PathBuf,
+    /// Pictures of the flight.
+    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    frames: u32,
+}
+
+/// Width and height of the pictures.
+const SIZE: [u32; 2] = [960, 540];
+
+/// Pixels per side of the pictures of the maps, which have twice as many texels.
+const MAP_PICTURE_SIZE: u32 = sun::MAP_SIZE / 2;
+
+fn main() -> ExitCode {
+    arguments::run("city", run)
+}
+
+fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
+    let gpu = Gpu::new()?;
+    picture::make_folder(&arguments.folder)?;
+    let town = Town::new(&gpu.device)?;
+    let casters: Vec<&dyn ShadowCaster> = town.buildings.iter().map(|b| b as _).collect();
+    let mut sun = Sun::new(&gpu)?;
+    println!("{} buildings cast", casters.len());
+
+    let save = |name: &str, pixels: &[u8], size| {
+        let path = arguments.folder.join(name);
+        picture::save(&path, pixels, size).map(|()| println!("{}", path.display()))
+    };
+    let mut table = Table::default();
+    for frame in 0..arguments.frames {
+        let camera = flight::camera(frame, arguments.frames, SIZE);
+        let pixels = sun.draw(&gpu, &town, &camera, &casters, Show::Scene)?;
+        save(&format!("frame-{frame:03}.png"), &pixels, SIZE)?;
+        print!("{}", table.add(sun.report(), sun.record_time()));
+    }
+    let count = table.frames();
+    println!(
+        "record: {:.2?} of CPU time, the median of {count} frames",
+        table.median_record_time()
+    );
+
+    let camera = flight::camera(0, arguments.frames, SIZE);
+    let pixels = sun.draw(&gpu, &town, &camera, &casters, Show::Cascades)?;
+    save("tint.png", &pixels, SIZE)?;
+    for layer in 0..sun::CASCADES {
+        let size = [MAP_PICTURE_SIZE; 2];
+        let pixels = sun.draw_map(&gpu, layer, size)?;
+        save(&format!("map-{layer}.png"), &pixels, size)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,160 @@
+//! The sun's shadows, and the pictures that they are in.
+
+use std::error::Error;
+use std::time::{Duration, Instant};
+
+use glam::{DVec3, Vec3};
+use wgpu_shadows::{
+    Coverage, DebugPicture, DirectionalFrame, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, ShadowBindings, ShadowBindingsDescriptor, ShadowCaster,
+    ShadowReport,
+};
+
+use crate::common::camera::Camera;
+use crate::common::gpu::Gpu;
+use crate::common::phong::{Lighting, Phong, PhongDescriptor, Picture};
+use crate::common::{map_picture, picture};
+use crate::town::Town;
+
+/// Texels per side of each cascade.
+pub const MAP_SIZE: u32 = 2048;
+
+/// How many cascades.
+pub const CASCADES: u32 = 4;
+
+/// From the town to the sun: some thirty degrees above the roofs, and a little aside of the streets.
+const TOWARD_SUN: Vec3 = Vec3::new(0.44, 0.52, 0.70);
+
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+
+/// Pictures are drawn at twice their size and averaged. Multisampling shades at the centre of a pixel what only a corner of it
+/// shows: at the foot of a lit wall that is pavement inside the house, and dark.
+const DRAWN_SIZE: [u32; 2] = [2 * crate::SIZE[0], 2 * crate::SIZE[1]];
+
+/// What a picture shows.
+#[derive(Clone, Copy)]
+pub enum Show {
+    Scene,
+    /// The scene, tinted by the cascade that serves the pixel.
+    Cascades,
+}
+
+/// A sun that casts shadows, and the passes that ask for them.
+pub struct Sun {
+    shadow: DirectionalShadow,
+    bindings: ShadowBindings,
+    scene: Phong,
+    cascades: Phong,
+    record_time: Duration,
+}
+
+impl Sun {
+    pub fn new(gpu: &Gpu) -> Result<Self, Box<dyn Error>> {
+        let shadow = DirectionalShadow::new(
+            &gpu.device,
+            &DirectionalShadowDescriptor {
+                label: Some("sun"),
+                map_size: MAP_SIZE,
+                cascades: CASCADES,
+                ..Default::default()
+            },
+        )?;
+        let bindings = ShadowBindings::new(
+            &gpu.device,
+            &ShadowBindingsDescriptor {
+                lights: &[("sun", shadow.source())],
+                ..Default::default()
+            },
+        )?;
+        let phong = |fragment_entry| {
+            Phong::new(
+                gpu,
+                &PhongDescriptor {
+                    visibility_wgsl: bindings.wgsl(),
+                    fragment_wgsl: include_str!("city.wgsl"),
+                    fragment_entry,
+                    shadow_group: bindings.group(),
+                    shadow_layout: bindings.layout(),
+                    format: FORMAT,
+                    sample_count: 1,
+                },
+            )
+        };
+        Ok(Self {
+            scene: phong("fragment"),
+            cascades: phong("fragment_cascades"),
+            shadow,
+            bindings,
+            record_time: Duration::ZERO,
+        })
+    }
+
+    /// What the last frame cost.
+    pub fn report(&self) -> &ShadowReport {
+        self.shadow.report()
+    }
+
+    /// Time on the CPU of the last call of `record`: fit, cull, and the recording of the passes.
+    pub fn record_time(&self) -> Duration {
+        self.record_time
+    }
+
+    /// The picture that `camera` takes of the town: depth passes, then the scene.
+    pub fn draw(
+        &mut self,
+        gpu: &Gpu,
+        town: &Town,
+        camera: &Camera,
+        casters: &[&dyn ShadowCaster],
+        show: Show,
+    ) -> Result<Vec<u8>, Box<dyn Error>> {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let frame = DirectionalFrame {
+            origin: DVec3::ZERO,
+            light: DirectionalLight::new(-TOWARD_SUN),
+            coverage: Coverage::Camera(camera.for_shadows()),
+            casters,
+            receivers: &[town.ground],
+        };
+        let start = Instant::now();
+        self.shadow.record(&gpu.device, &mut encoder, &frame)?;
+        self.record_time = start.elapsed();
+
+        let lighting = Lighting {
+            light: TOWARD_SUN.normalize().extend(0.0),
+            light_color: Vec3::new(1.15, 1.0, 0.80),
+            light_range: f32::INFINITY,
+            ambient: Vec3::new(0.14, 0.18, 0.25),
+            sky: Vec3::new(0.45, 0.58, 0.75),
+        };
+        let target = gpu.target(FORMAT, DRAWN_SIZE, 1);
+        let phong = match show {
+            Show::Scene => &self.scene,
+            Show::Cascades => &self.cascades,
+        };
+        phong.draw(
+            gpu,
+            &mut encoder,
+            &Picture {
+                camera,
+                lighting: &lighting,
+                shadows: self.bindings.bind_group(),
+                target: &target,
+            },
+            town.batches(),
+        );
+        Ok(picture::halved(&gpu.read(encoder, &target)?, DRAWN_SIZE))
+    }
+
+    /// The map of one cascade as the last frame left it.
+    pub fn draw_map(
+        &self,
+        gpu: &Gpu,
+        layer: u32,
+        size: [u32; 2],
+    ) -> Result<Vec<u8>, Box<dyn Error>> {
+        let encoder = gpu.device.create_command_encoder(&Default::default());
+        let layer = DebugPicture::Layer(layer);
+        map_picture::draw(gpu, encoder, self.shadow.source(), layer, size)
+    }
+}

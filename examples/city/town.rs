@@ -1,0 +1,133 @@
+//! Streets in a grid, blocks between them, and everything on them in one instance buffer.
+
+use glam::{Vec2, Vec3};
+use wgpu_shadows::{
+    Aabb, CasterError, CasterPipeline, CasterPipelineDescriptor, CasterVertex, ModelTransform,
+    PositionAttribute,
+};
+
+use crate::building::Building;
+use crate::common::mesh::{Instance, Mesh, Vertex, cube, sphere, vertex_buffer};
+use crate::common::phong::Batch;
+use crate::plot::{self, BLOCK_SIDE, Part, Shape};
+use crate::random::Random;
+
+/// From the middle of one street to the middle of the next.
+pub const STREET_SPACING: f32 = BLOCK_SIDE + 14.0;
+
+/// Blocks along each side of the town.
+const BLOCKS: i32 = 18;
+
+/// Height of the kerbs.
+const KERB: f32 = 0.15;
+
+/// The town. Streets run along x and z; one of each passes through the middle.
+pub struct Town {
+    pub buildings: Vec<Building>,
+    /// What only receives: streets and pavements.
+    pub ground: Aabb,
+    box_mesh: Mesh,
+    dome_mesh: Mesh,
+    instances: wgpu::Buffer,
+    /// The instances in order: ground and pavements, buildings that are boxes, domes.
+    first_dome: u32,
+    instance_count: u32,
+}
+
+impl Town {
+    pub fn new(device: &wgpu::Device) -> Result<Self, CasterError> {
+        let mut random = Random::new(5);
+        let mut pavements = vec![street()];
+        let (mut boxes, mut domes) = (Vec::new(), Vec::new());
+        for (column, row) in (0..BLOCKS).flat_map(|x| (0..BLOCKS).map(move |z| (x, z))) {
+            let cell = Vec2::new(column as f32, row as f32) + 0.5 - BLOCKS as f32 * 0.5;
+            let center = cell * STREET_SPACING;
+            let half = Vec2::splat(BLOCK_SIDE * 0.5);
+            let slab = Vec3::new(0.46, 0.45, 0.43);
+            pavements.push(plot::upright(center, half, 0.0, KERB, slab));
+            // Higher toward the middle.
+            let eaves = 9.0 + 16.0 * (-cell.length_squared() / 30.0).exp();
+            for part in plot::block(&mut random, center, eaves) {
+                match part.shape {
+                    Shape::Box => boxes.push(part),
+                    Shape::Dome => domes.push(part),
+                }
+            }
+        }
+        let first_building = pavements.len() as u32;
+        let first_dome = first_building + boxes.len() as u32;
+        let parts: Vec<Part> = pavements.into_iter().chain(boxes).chain(domes).collect();
+        let instances: Vec<Instance> = parts.iter().map(|part| part.instance).collect();
+        let instances = vertex_buffer(device, &instances);
+        let box_mesh = Mesh::new(device, &cube());
+        let dome_mesh = Mesh::new(device, &sphere(24));
+        let pipeline = caster_pipeline(device)?;
+        let buildings = (0..)
+            .zip(&parts)
+            .skip(first_building as usize)
+            .map(|(index, part)| {
+                let mesh = match part.shape {
+                    Shape::Box => &box_mesh,
+                    Shape::Dome => &dome_mesh,
+                };
+                Building::new(mesh, &instances, index, &part.instance, &pipeline)
+            })
+            .collect();
+        Ok(Self {
+            buildings,
+            ground: ground(),
+            box_mesh,
+            dome_mesh,
+            instances,
+            first_dome,
+            instance_count: parts.len() as u32,
+        })
+    }
+
+    /// All of the town in two draws.
+    pub fn batches(&self) -> [Batch<'_>; 2] {
+        let batch = |mesh, range| Batch {
+            mesh,
+            instances: &self.instances,
+            range,
+        };
+        [
+            batch(&self.box_mesh, 0..self.first_dome),
+            batch(&self.dome_mesh, self.first_dome..self.instance_count),
+        ]
+    }
+}
+
+/// Streets and pavements.
+fn ground() -> Aabb {
+    let reach = BLOCKS as f32 * 0.5 * STREET_SPACING;
+    Aabb::new(
+        Vec3::new(-reach, 0.0, -reach),
+        Vec3::new(reach, KERB, reach),
+    )
+}
+
+/// One slab of asphalt under everything.
+fn street() -> Part {
+    let half = ground().max.x;
+    let asphalt = Vec3::new(0.20, 0.20, 0.21);
+    plot::upright(Vec2::ZERO, Vec2::splat(half), -1.0, 0.0, asphalt)
+}
+
+/// Reads the matrices where the scene's pass reads them: in the instance buffer.
+fn caster_pipeline(device: &wgpu::Device) -> Result<CasterPipeline, CasterError> {
+    CasterPipeline::new(
+        device,
+        &CasterPipelineDescriptor {
+            label: Some("building"),
+            vertex: CasterVertex::BuiltIn {
+                position: PositionAttribute::float32x3(size_of::<Vertex>() as u64),
+                model: ModelTransform::InstanceMatrix {
+                    array_stride: size_of::<Instance>() as u64,
+                    offset: 0,
+                },
+            },
+            ..Default::default()
+        },
+    )
+}

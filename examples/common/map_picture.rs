@@ -1,0 +1,34 @@
+//! A shadow map as a picture.
+
+use std::error::Error;
+
+use wgpu_shadows::{DebugPicture, DebugView, ShadowSource};
+
+use super::gpu::Gpu;
+
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// Draws `what` of `source` after what `encoder` holds, submits, and reads the picture back: four bytes a pixel.
+pub fn draw(
+    gpu: &Gpu,
+    mut encoder: wgpu::CommandEncoder,
+    source: ShadowSource<'_>,
+    what: DebugPicture,
+    size: [u32; 2],
+) -> Result<Vec<u8>, Box<dyn Error>> {
+    let target = gpu.target(FORMAT, size, 1);
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("map"),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: &target.create_view(&Default::default()),
+            depth_slice: None,
+            resolve_target: None,
+            ops: Default::default(),
+        })],
+        ..Default::default()
+    });
+    let debug_view = DebugView::new(&gpu.device, FORMAT)?;
+    debug_view.draw(&gpu.device, &mut pass, source, what)?;
+    drop(pass);
+    gpu.read(encoder, &target)
+}

@@ -1,0 +1,270 @@
+//! The pass that draws meshes with Blinn-Phong, one light and its shadow.
+
+use std::ops::Range;
+
+use bytemuck::{Pod, Zeroable};
+use glam::{Mat4, Vec3, Vec4};
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
+
+use super::camera::Camera;
+use super::gpu::Gpu;
+use super::mesh::{Instance, Mesh, Object, Vertex};
+
+const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// What a [`Phong`] is made of.
+pub struct PhongDescriptor<'a> {
+    /// WGSL that the fragment stage asks for visibility.
+    pub visibility_wgsl: &'a str,
+    /// WGSL of the fragment stage, which may call `shade`.
+    pub fragment_wgsl: &'a str,
+    pub fragment_entry: &'a str,
+    /// Bind group that visibility is read from.
+    pub shadow_group: u32,
+    pub shadow_layout: &'a wgpu::BindGroupLayout,
+    pub format: wgpu::TextureFormat,
+    pub sample_count: u32,
+}
+
+/// Light and eye of a picture.
+#[derive(Clone, Copy)]
+pub struct Lighting {
+    /// Toward a sun (w = 0), or the place of a lamp (w = 1).
+    pub light: Vec4,
+    pub light_color: Vec3,
+    /// Where a lamp's light ends.
+    pub light_range: f32,
+    pub ambient: Vec3,
+    /// Linear colour where nothing is.
+    pub sky: Vec3,
+}
+
+/// Where a picture is taken, in what light, with which shadows, and where it goes.
+pub struct Picture<'a> {
+    pub camera: &'a Camera,
+    pub lighting: &'a Lighting,
+    /// Bind group that visibility is read from.
+    pub shadows: &'a wgpu::BindGroup,
+    pub target: &'a wgpu::Texture,
+}
+
+/// Mirror of `Frame` in `phong.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct Frame {
+    clip_from_render: Mat4,
+    light: Vec4,
+    light_color: Vec3,
+    light_range: f32,
+    ambient: Vec4,
+    eye: Vec4,
+}
+
+/// Instances of one mesh.
+pub struct Batch<'a> {
+    pub mesh: &'a Mesh,
+    pub instances: &'a wgpu::Buffer,
+    pub range: Range<u32>,
+}
+
+impl<'a> From<&'a Object> for Batch<'a> {
+    fn from(object: &'a Object) -> Self {
+        Self {
+            mesh: &object.mesh,
+            instances: &object.instance,
+            range: 0..1,
+        }
+    }
+}
+
+/// A pipeline, and the pass around it.
+pub struct Phong {
+    pipeline: wgpu::RenderPipeline,
+    frame_layout: wgpu::BindGroupLayout,
+    shadow_group: u32,
+    format: wgpu::TextureFormat,
+    sample_count: u32,
+}
+
+impl Phong {
+    pub fn new(gpu: &Gpu, descriptor: &PhongDescriptor<'_>) -> Self {
+        let layout = wgpu::BindGroupLayoutDescriptor {
+            label: Some("frame"),
+            entries: &[wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+                ty: wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Uniform,
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
+                count: None,
+            }],
+        };
+        let frame_layout = gpu.device.create_bind_group_layout(&layout);
+        Self {
+            pipeline: create_pipeline(gpu, descriptor, &frame_layout),
+            frame_layout,
+            shadow_group: descriptor.shadow_group,
+            format: descriptor.format,
+            sample_count: descriptor.sample_count,
+        }
+    }
+
+    /// Draws `batches` over the whole of the picture's target.
+    pub fn draw<'a>(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        picture: &Picture<'_>,
+        batches: impl IntoIterator<Item = Batch<'a>>,
+    ) {
+        let Picture {
+            camera,
+            lighting,
+            shadows,
+            target,
+        } = *picture;
+        let frame = self.frame(gpu, camera, lighting);
+        let size = [target.width(), target.height()];
+        let depth = gpu.target(DEPTH_FORMAT, size, self.sample_count);
+        let multisampled = gpu.target(self.format, size, self.sample_count);
+        let multisampled = multisampled.create_view(&Default::default());
+        let target = target.create_view(&Default::default());
+        let (view, resolve_target) = if self.sample_count > 1 {
+            (&multisampled, Some(&target))
+        } else {
+            (&target, None)
+        };
+        let [r, g, b] = lighting.sky.as_dvec3().to_array();
+        let sky = wgpu::Color { r, g, b, a: 1.0 };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("scene"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(sky),
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &depth.create_view(&Default::default()),
+                // Reversed depth: the far end of the world is 0.
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(0.0),
+                    store: wgpu::StoreOp::Discard,
+                }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &frame, &[]);
+        pass.set_bind_group(self.shadow_group, shadows, &[]);
+        for batch in batches {
+            pass.set_vertex_buffer(0, batch.mesh.vertices.slice(..));
+            pass.set_vertex_buffer(1, batch.instances.slice(..));
+            pass.draw(0..batch.mesh.vertex_count, batch.range);
+        }
+    }
+
+    fn frame(&self, gpu: &Gpu, camera: &Camera, lighting: &Lighting) -> wgpu::BindGroup {
+        let frame = Frame {
+            clip_from_render: camera.clip_from_render(),
+            light: lighting.light,
+            light_color: lighting.light_color,
+            light_range: lighting.light_range,
+            ambient: lighting.ambient.extend(0.0),
+            eye: camera.eye.extend(0.0),
+        };
+        let buffer = gpu.device.create_buffer_init(&BufferInitDescriptor {
+            label: Some("frame"),
+            contents: bytemuck::bytes_of(&frame),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("frame"),
+            layout: &self.frame_layout,
+            entries: &[wgpu::BindGroupEntry {
+                binding: 0,
+                resource: buffer.as_entire_binding(),
+            }],
+        })
+    }
+}
+
+fn create_pipeline(
+    gpu: &Gpu,
+    descriptor: &PhongDescriptor<'_>,
+    frame_layout: &wgpu::BindGroupLayout,
+) -> wgpu::RenderPipeline {
+    let device = &gpu.device;
+    let wgsl = [
+        descriptor.visibility_wgsl,
+        include_str!("phong.wgsl"),
+        descriptor.fragment_wgsl,
+    ];
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("scene"),
+        source: wgpu::ShaderSource::Wgsl(wgsl.concat().into()),
+    });
+    let mut layouts = vec![None; descriptor.shadow_group as usize + 1];
+    layouts[0] = Some(frame_layout);
+    layouts[descriptor.shadow_group as usize] = Some(descriptor.shadow_layout);
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("scene"),
+        bind_group_layouts: &layouts,
+        immediate_size: 0,
+    });
+    let vertex = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
+    let instance = wgpu::vertex_attr_array![
+        2 => Float32x4, 3 => Float32x4, 4 => Float32x4, 5 => Float32x4, 6 => Float32x4
+    ];
+    let buffers = [
+        wgpu::VertexBufferLayout {
+            array_stride: size_of::<Vertex>() as u64,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &vertex,
+        },
+        wgpu::VertexBufferLayout {
+            array_stride: size_of::<Instance>() as u64,
+            step_mode: wgpu::VertexStepMode::Instance,
+            attributes: &instance,
+        },
+    ];
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("scene"),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("vertex"),
+            compilation_options: Default::default(),
+            buffers: &buffers.map(Some),
+        },
+        primitive: wgpu::PrimitiveState {
+            cull_mode: Some(wgpu::Face::Back),
+            ..Default::default()
+        },
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: DEPTH_FORMAT,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Greater),
+            stencil: Default::default(),
+            bias: Default::default(),
+        }),
+        multisample: wgpu::MultisampleState {
+            count: descriptor.sample_count,
+            ..Default::default()
+        },
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some(descriptor.fragment_entry),
+            compilation_options: Default::default(),
+            targets: &[Some(descriptor.format.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}

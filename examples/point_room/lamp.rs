@@ -1,0 +1,156 @@
+//! The lamp's shadows, and the pictures that they are in.
+
+use std::error::Error;
+
+use glam::{DVec3, Vec3};
+use wgpu_shadows::{
+    CameraView, DebugPicture, Filter, OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor,
+    ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowError, ShadowReport,
+};
+
+use crate::SIZE;
+use crate::common::gpu::Gpu;
+use crate::common::map_picture;
+use crate::common::phong::{Batch, Lighting, Phong, PhongDescriptor, Picture};
+use crate::room::{self, Room};
+
+/// Texels per side of each face.
+pub const MAP_SIZE: u32 = 1024;
+
+/// How far the lamp shines.
+const RANGE: f32 = 15.0;
+
+const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+
+/// A lamp that casts shadows, and the pass that asks for them.
+pub struct Lamp {
+    shadow: OmniShadow,
+    bindings: ShadowBindings,
+    phong: Phong,
+}
+
+impl Lamp {
+    pub fn new(gpu: &Gpu, filter: Filter) -> Result<Self, Box<dyn Error>> {
+        let shadow = OmniShadow::new(
+            &gpu.device,
+            &OmniShadowDescriptor {
+                label: Some("lamp"),
+                map_size: MAP_SIZE,
+                filter,
+                ..Default::default()
+            },
+        )?;
+        let bindings = ShadowBindings::new(
+            &gpu.device,
+            &ShadowBindingsDescriptor {
+                lights: &[("lamp", shadow.source())],
+                ..Default::default()
+            },
+        )?;
+        let phong = Phong::new(
+            gpu,
+            &PhongDescriptor {
+                visibility_wgsl: bindings.wgsl(),
+                fragment_wgsl: include_str!("room.wgsl"),
+                fragment_entry: "fragment",
+                shadow_group: bindings.group(),
+                shadow_layout: bindings.layout(),
+                format: PICTURE_FORMAT,
+                sample_count: 4,
+            },
+        );
+        Ok(Self {
+            shadow,
+            bindings,
+            phong,
+        })
+    }
+
+    /// What the last frame cost.
+    pub fn report(&self) -> &ShadowReport {
+        self.shadow.report()
+    }
+
+    /// The picture of the room with the lamp at `place`: depth passes of what the camera needs, then the scene.
+    pub fn draw(
+        &mut self,
+        gpu: &Gpu,
+        room: &Room,
+        place: Vec3,
+        casters: &[&dyn ShadowCaster],
+    ) -> Result<Vec<u8>, Box<dyn Error>> {
+        let camera = room::camera(SIZE);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let view = Some(camera.for_shadows());
+        self.record(gpu, &mut encoder, room, place, view, casters)?;
+
+        let lighting = Lighting {
+            light: place.extend(1.0),
+            light_color: Vec3::new(1.0, 0.96, 0.88),
+            light_range: RANGE,
+            ambient: Vec3::splat(0.12),
+            sky: Vec3::ZERO,
+        };
+        let bulb = room::bulb(&gpu.device, place);
+        let target = gpu.target(PICTURE_FORMAT, SIZE, 1);
+        self.phong.draw(
+            gpu,
+            &mut encoder,
+            &Picture {
+                camera: &camera,
+                lighting: &lighting,
+                shadows: self.bindings.bind_group(),
+                target: &target,
+            },
+            room.objects().chain([&bulb]).map(Batch::from),
+        );
+        gpu.read(encoder, &target)
+    }
+
+    /// Fills all faces, whoever may look at them.
+    pub fn record_for_all_of_space(
+        &mut self,
+        gpu: &Gpu,
+        room: &Room,
+        place: Vec3,
+        casters: &[&dyn ShadowCaster],
+    ) -> Result<(), ShadowError> {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        self.record(gpu, &mut encoder, room, place, None, casters)?;
+        gpu.queue.submit([encoder.finish()]);
+        Ok(())
+    }
+
+    /// The map as the last frame left it.
+    pub fn draw_map(
+        &self,
+        gpu: &Gpu,
+        picture: DebugPicture,
+        size: [u32; 2],
+    ) -> Result<Vec<u8>, Box<dyn Error>> {
+        let encoder = gpu.device.create_command_encoder(&Default::default());
+        map_picture::draw(gpu, encoder, self.shadow.source(), picture, size)
+    }
+
+    fn record(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        room: &Room,
+        place: Vec3,
+        camera: Option<CameraView>,
+        casters: &[&dyn ShadowCaster],
+    ) -> Result<(), ShadowError> {
+        let frame = OmniFrame {
+            origin: DVec3::ZERO,
+            light: OmniLight {
+                position_world: place.as_dvec3(),
+                range: RANGE,
+            },
+            camera,
+            casters,
+            receivers: &room.walls(),
+        };
+        self.shadow.record(&gpu.device, encoder, &frame).map(|_| ())
+    }
+}

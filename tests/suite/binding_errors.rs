@@ -1,0 +1,209 @@
+//! What `ShadowBindings`, `shader::compose` and `DebugView` refuse: each error provoked, compared as a value, and read as a
+//! message.
+
+use wgpu_shadows::{
+    BindingsError, DebugPicture, DebugView, DebugViewError, DirectionalShadow,
+    DirectionalShadowDescriptor, ShadowBindings, ShadowBindingsDescriptor, shader,
+};
+
+use crate::support::gpu::{Gpu, gpu};
+use crate::support::picture::{color_pass, color_target};
+use crate::support::readback;
+use crate::support::wgsl;
+
+fn tiny_sun(gpu: &Gpu, cascades: u32) -> DirectionalShadow {
+    let descriptor = DirectionalShadowDescriptor {
+        map_size: 1,
+        cascades,
+        ..Default::default()
+    };
+    DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun")
+}
+
+/// An engine's names become WGSL identifiers, so they must be such, and must not be the library's own.
+#[test]
+fn light_names_that_are_no_identifiers() {
+    let gpu = gpu();
+    let sun = tiny_sun(gpu, 1);
+    let bind = |names: &[&str]| {
+        let lights: Vec<_> = names.iter().map(|name| (*name, sun.source())).collect();
+        let descriptor = ShadowBindingsDescriptor {
+            lights: &lights,
+            ..Default::default()
+        };
+        ShadowBindings::new(&gpu.device, &descriptor).map(|_| ())
+    };
+    let names = [
+        "",
+        "Sun",
+        "sun1",
+        "1sun",
+        "sun_",
+        "_sun",
+        "the__sun",
+        "the sun",
+        "sun-light",
+        "sön",
+        // Functions that the library has already.
+        "plane",
+        "geometric_normal",
+        "gather",
+        "sharpen",
+        "filter_nearest",
+    ];
+    for name in names {
+        let error = bind(&[name]).expect_err(name);
+        let name = name.to_owned();
+        assert_eq!(error, BindingsError::Name { name: name.clone() });
+        let text = error.to_string();
+        assert!(
+            text.starts_with("ShadowBindingsDescriptor::lights: name must be"),
+            "{text}"
+        );
+        assert!(text.ends_with(&format!("got {name:?}")), "{text}");
+    }
+    for name in ["sun", "s", "sun_2_high", "s9n"] {
+        assert_eq!(bind(&[name]), Ok(()), "{name}");
+    }
+    let error = bind(&["sun", "moon", "sun"]).expect_err("twice");
+    let name = "sun".to_owned();
+    assert_eq!(error, BindingsError::DuplicateName { name });
+    assert_eq!(
+        error.to_string(),
+        "ShadowBindingsDescriptor::lights: names must differ, got \"sun\" twice"
+    );
+}
+
+/// Names that would meet the library's own variables, or those of another light, are refused or spelled otherwise: what is
+/// emitted compiles.
+#[test]
+fn light_names_that_meet_others() {
+    let gpu = gpu();
+    let sun = tiny_sun(gpu, 1);
+    let sets: [&[&str]; 6] = [
+        &["point_sampler"],
+        &["comparison_sampler"],
+        &["sun", "views_sun"],
+        &["sun", "map_sun"],
+        &["views_sun", "sun"],
+        &["map_sun", "views_map_sun", "map_views_sun"],
+    ];
+    let mut failures = Vec::new();
+    for names in sets {
+        let lights: Vec<_> = names.iter().map(|name| (*name, sun.source())).collect();
+        let descriptor = ShadowBindingsDescriptor {
+            lights: &lights,
+            ..Default::default()
+        };
+        let result = ShadowBindings::new(&gpu.device, &descriptor);
+        if let Ok(bindings) = result {
+            if let Err(error) = wgsl::validate(bindings.wgsl()) {
+                failures.push(format!("{names:?}: {error}"));
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn bindings_beyond_the_devices_limits() {
+    let gpu = gpu();
+    let limits = gpu.device.limits();
+    let sun = tiny_sun(gpu, 1);
+    let bind = |group, lights: &[_]| {
+        let descriptor = ShadowBindingsDescriptor {
+            group,
+            lights,
+            ..Default::default()
+        };
+        ShadowBindings::new(&gpu.device, &descriptor).map(|_| ())
+    };
+    let (group, maximum) = (limits.max_bind_groups, limits.max_bind_groups);
+    let error = bind(group, &[("sun", sun.source())]).expect_err("a group");
+    assert_eq!(error, BindingsError::Group { group, maximum });
+    let message = "ShadowBindingsDescriptor::group must be below the device's max_bind_groups = ";
+    assert_eq!(
+        error.to_string(),
+        format!("{message}{maximum}, got {group}")
+    );
+
+    // As many lights as a stage has uniform buffers, which are the fewest, and one more.
+    let most = limits.max_uniform_buffers_per_shader_stage as usize;
+    let letter = |index: usize| char::from(b'a' + (index % 26) as u8);
+    let names: Vec<_> = (0..=most)
+        .map(|index| format!("{}{}", letter(index / 26), letter(index)))
+        .collect();
+    let lights: Vec<_> = names
+        .iter()
+        .map(|name| (name.as_str(), sun.source()))
+        .collect();
+    assert_eq!(bind(1, &lights[..most]), Ok(()));
+    let (needed, maximum) = (most as u32 + 1, most as u32);
+    let error = bind(1, &lights).expect_err("too many");
+    let limit = "max_uniform_buffers_per_shader_stage";
+    assert_eq!(
+        error,
+        BindingsError::OverDeviceLimit {
+            limit,
+            needed,
+            maximum
+        }
+    );
+    assert_eq!(
+        error.to_string(),
+        format!(
+            "ShadowBindingsDescriptor::lights need {needed} {limit}, and the device has {maximum}"
+        )
+    );
+}
+
+#[test]
+fn modules_that_do_not_exist() {
+    let error = shader::compose(&["view", "no_such"]).expect_err("no module");
+    let name = "no_such".to_owned();
+    assert_eq!(error, BindingsError::UnknownModule { name });
+    assert_eq!(
+        error.to_string(),
+        "there is no shader module named \"no_such\""
+    );
+}
+
+#[test]
+fn debug_views_that_cannot_be_drawn() {
+    use wgpu::TextureFormat as F;
+    let gpu = gpu();
+    for format in [F::Depth32Float, F::Rgba8Uint, F::Bc1RgbaUnorm, F::R32Sint] {
+        let error = DebugView::new(&gpu.device, format).expect_err("a format");
+        assert_eq!(error, DebugViewError::Format { format });
+        let message = "DebugView: the target must be a renderable float colour format, got ";
+        assert_eq!(error.to_string(), format!("{message}{format:?}"));
+    }
+    let view = DebugView::new(&gpu.device, F::Rgba8Unorm).expect("a renderable format");
+    let sun = tiny_sun(gpu, 2);
+    let target = color_target(gpu, 4);
+    let mut encoder = gpu.encoder();
+    {
+        let mut pass = color_pass(&mut encoder, &target);
+        let mut draw = |picture| view.draw(&gpu.device, &mut pass, sun.source(), picture);
+        let error = draw(DebugPicture::Layer(2)).expect_err("no layer");
+        assert_eq!(
+            error,
+            DebugViewError::Layer {
+                layer: 2,
+                layers: 2
+            }
+        );
+        let message = "DebugView: layer must be below the map's 2 layers, got 2";
+        assert_eq!(error.to_string(), message);
+        let error = draw(DebugPicture::Cross).expect_err("no cube");
+        assert_eq!(error, DebugViewError::NotACube { layers: 2 });
+        assert_eq!(
+            error.to_string(),
+            "DebugView: a cross needs the six faces of a point light, got a light with 2 layers"
+        );
+    }
+    gpu.submit(encoder);
+    // Nothing was drawn: the target still has the colour it was cleared to.
+    let pixels = readback::rgba8(gpu, &target);
+    assert!(pixels.pixels().all(|pixel| pixel.0 == [0, 0, 0, 255]));
+}

@@ -1,0 +1,159 @@
+//! What a sun refuses at construction: each error provoked, compared as a value, and read as a message that names field, rule
+//! and value.
+
+use glam::{DVec3, Mat4, Vec3};
+use wgpu_shadows::{
+    Aabb, Bias, CascadeSplit, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, Filter, ShadowError,
+};
+
+use crate::support::gpu::{Gpu, GpuRequest, gpu};
+use crate::support::scene::{Mesh, default_pipeline};
+
+fn sun(gpu: &Gpu, descriptor: &DirectionalShadowDescriptor<'_>) -> Result<(), ShadowError> {
+    DirectionalShadow::new(&gpu.device, descriptor).map(|_| ())
+}
+
+#[test]
+fn descriptors_out_of_range() {
+    let good = DirectionalShadowDescriptor {
+        map_size: 16,
+        ..Default::default()
+    };
+    let sharpness = |sharpness| DirectionalShadowDescriptor {
+        filter: Filter::TentMedium { sharpness },
+        ..good
+    };
+    let bias = |constant, slope| DirectionalShadowDescriptor {
+        bias: Bias::Manual { constant, slope },
+        ..good
+    };
+    let split = |lambda| DirectionalShadowDescriptor {
+        split: CascadeSplit::Practical { lambda },
+        ..good
+    };
+    let cascades = |cascades| DirectionalShadowDescriptor { cascades, ..good };
+    let size = |map_size| DirectionalShadowDescriptor { map_size, ..good };
+    let filter_rule = "of a finite sharpness of at least 1";
+    let bias_rule = "of finite constant and slope of at least 0";
+    let cases = [
+        (cascades(0), "cascades", "in 1..=8", "0"),
+        (cascades(9), "cascades", "in 1..=8", "9"),
+        (size(0), "map_size", "at least 1", "0"),
+        (sharpness(0.5), "filter", filter_rule, "0.5"),
+        (sharpness(f32::NAN), "filter", filter_rule, "NaN"),
+        (sharpness(f32::INFINITY), "filter", filter_rule, "inf"),
+        (
+            bias(-0.25, 1.0),
+            "bias",
+            bias_rule,
+            "constant -0.25, slope 1",
+        ),
+        (
+            bias(0.0, f32::NAN),
+            "bias",
+            bias_rule,
+            "constant 0, slope NaN",
+        ),
+        (split(1.5), "split", "of a lambda in 0..=1", "1.5"),
+        (split(f32::NAN), "split", "of a lambda in 0..=1", "NaN"),
+    ];
+    assert_eq!(sun(gpu(), &good), Ok(()));
+    for (descriptor, field, rule, value) in cases {
+        let error = sun(gpu(), &descriptor).expect_err(field);
+        let path = format!("DirectionalShadowDescriptor::{field}");
+        assert_eq!(
+            error.to_string(),
+            format!("{path} must be {rule}, got {value}")
+        );
+        assert!(matches!(error, ShadowError::OutOfRange { field, .. } if field == path));
+    }
+}
+
+#[test]
+fn maps_larger_than_the_device_allows() {
+    let maximum = gpu().device.limits().max_texture_dimension_2d;
+    let descriptor = DirectionalShadowDescriptor {
+        map_size: maximum + 1,
+        ..Default::default()
+    };
+    let error = sun(gpu(), &descriptor).expect_err("too large");
+    let wanted = ShadowError::OverDeviceLimit {
+        field: "DirectionalShadowDescriptor::map_size",
+        limit: "max_texture_dimension_2d",
+        maximum,
+        value: maximum + 1,
+    };
+    assert_eq!(error, wanted);
+    assert_eq!(
+        error.to_string(),
+        format!(
+            "DirectionalShadowDescriptor::map_size must be at most the device's max_texture_dimension_2d = {maximum}, got {}",
+            maximum + 1
+        )
+    );
+}
+
+/// More than a software adapter addresses: the limits allow each side and the layers, and memory does not hold them. (OpenGL
+/// does not say when it runs out.)
+#[test]
+fn maps_larger_than_the_memory() {
+    let limits = wgpu::Limits {
+        max_texture_dimension_2d: 16384,
+        ..Default::default()
+    };
+    let large = Gpu::new(GpuRequest {
+        limits,
+        backend: Some(wgpu::Backends::VULKAN),
+        ..Default::default()
+    });
+    let descriptor = DirectionalShadowDescriptor {
+        map_size: 16384,
+        cascades: 8,
+        ..Default::default()
+    };
+    let error = sun(&large, &descriptor).expect_err("no memory");
+    let wanted = ShadowError::OutOfMemory {
+        field: "DirectionalShadowDescriptor::map_size",
+        bytes: 16384 * 16384 * 4 * 8,
+    };
+    assert_eq!(error, wanted);
+    assert_eq!(
+        error.to_string(),
+        "DirectionalShadowDescriptor::map_size needs 8589934592 bytes of device memory, and the device is out of memory"
+    );
+}
+
+/// A device that is gone: the frame is refused in the device's own words, and nothing panics, at construction either.
+#[test]
+fn a_lost_device() {
+    let lost = Gpu::new(GpuRequest::default());
+    let descriptor = DirectionalShadowDescriptor {
+        map_size: 16,
+        ..Default::default()
+    };
+    let mut shadow = DirectionalShadow::new(&lost.device, &descriptor).expect("a valid sun");
+    let mesh = Mesh::cuboid(Vec3::ZERO, Vec3::ONE);
+    let caster = mesh.caster(&lost, &default_pipeline(&lost), Mat4::IDENTITY);
+    lost.device.destroy();
+    let frame = DirectionalFrame {
+        origin: DVec3::ZERO,
+        light: DirectionalLight::new(Vec3::NEG_Y),
+        coverage: Coverage::Bounds(Aabb::new(Vec3::NEG_ONE, Vec3::ONE)),
+        casters: &[&caster],
+        receivers: &[],
+    };
+    let mut encoder = lost.encoder();
+    let result = shadow.record(&lost.device, &mut encoder, &frame);
+    let error = result.expect_err("a lost device").clone();
+    let ShadowError::Device { object, message } = &error else {
+        panic!("{error:?}");
+    };
+    assert_eq!(*object, "a uniform buffer");
+    assert_eq!(
+        error.to_string(),
+        format!("the device refused {object}: {message}")
+    );
+    assert_eq!(shadow.views().len(), 0);
+    let _ = sun(&lost, &descriptor);
+}

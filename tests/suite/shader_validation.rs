@@ -1,0 +1,205 @@
+//! Every WGSL text of the library through naga, and the table that says what each requires.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+use wgpu_shadows::shader::{self, MODULES, ShaderModule};
+
+use crate::support::wgsl;
+
+/// Fails with all that went wrong, not with the first of it.
+fn report(failures: &[String]) {
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+fn find(name: &str) -> &'static ShaderModule {
+    MODULES
+        .iter()
+        .find(|module| module.name == name)
+        .unwrap_or_else(|| panic!("no module {name}"))
+}
+
+/// All that a module requires, directly or not, without itself.
+fn all_required(module: &ShaderModule) -> BTreeSet<&'static str> {
+    let mut found = BTreeSet::new();
+    let mut open = module.requires.to_vec();
+    while let Some(name) = open.pop() {
+        if found.insert(name) {
+            open.extend_from_slice(find(name).requires);
+        }
+    }
+    found
+}
+
+#[test]
+fn every_module_validates_with_what_it_requires() {
+    let mut failures = Vec::new();
+    for module in MODULES {
+        let source = shader::compose(&[module.name]).expect("a module of the table");
+        if let Err(error) = wgsl::validate(&source) {
+            failures.push(format!("{}: {error}", module.name));
+        }
+        // The union must be the module and what it requires, each once.
+        let mut names = all_required(module);
+        names.insert(module.name);
+        let length: usize = names.iter().map(|name| find(name).source.len()).sum();
+        if source.len() != length {
+            failures.push(format!(
+                "{}: composed {} bytes of {length}",
+                module.name,
+                source.len()
+            ));
+        }
+    }
+    report(&failures);
+}
+
+/// Without any one of the modules it requires, directly or not, a module does not compile; and what it names is required
+/// directly. So the table holds nothing too much and nothing too little.
+#[test]
+fn every_requirement_is_needed_and_direct() {
+    let mut failures = Vec::new();
+    for module in MODULES {
+        let required = all_required(module);
+        for dropped in &required {
+            let kept = required.iter().filter(|name| *name != dropped);
+            let source: String = kept
+                .map(|name| find(name).source)
+                .chain([module.source])
+                .collect();
+            if wgsl::validate(&source).is_ok() {
+                failures.push(format!("{} compiles without {dropped}", module.name));
+            }
+        }
+        // The pass modules that take each other's place give their entry points the same names.
+        let own = wgsl::top_level_names(module.source);
+        let mentioned: BTreeSet<_> = wgsl::identifiers(module.source)
+            .into_iter()
+            .filter(|name| !own.contains(name))
+            .collect();
+        let used: BTreeSet<&str> = MODULES
+            .iter()
+            .filter(|other| other.name != module.name)
+            .filter(|other| {
+                wgsl::top_level_names(other.source)
+                    .iter()
+                    .any(|name| mentioned.contains(name))
+            })
+            .map(|other| other.name)
+            .collect();
+        let declared: BTreeSet<&str> = module.requires.iter().copied().collect();
+        if used != declared || declared.len() != module.requires.len() {
+            failures.push(format!(
+                "{} uses {used:?} and requires {declared:?}",
+                module.name
+            ));
+        }
+    }
+    report(&failures);
+}
+
+/// The table and the directory hold the same texts under the same names.
+#[test]
+fn the_table_is_the_directory() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("wgsl");
+    let mut on_disk = BTreeSet::new();
+    for directory in [root.clone(), root.join("pass")] {
+        for entry in fs::read_dir(&directory).expect("the wgsl directory") {
+            let path = entry.expect("a directory entry").path();
+            if path.is_dir() {
+                assert_eq!(path, root.join("pass"), "an unknown directory of shaders");
+                continue;
+            }
+            let name = path.file_stem().and_then(|stem| stem.to_str());
+            let name = name.expect("a UTF-8 file name").to_owned();
+            assert_eq!(path.extension().and_then(|e| e.to_str()), Some("wgsl"));
+            let text = fs::read_to_string(&path).expect("a readable file");
+            assert_eq!(find(&name).source, text, "{name}");
+            assert!(on_disk.insert(name), "two files of one name: {path:?}");
+        }
+    }
+    let in_table: BTreeSet<String> = MODULES.iter().map(|m| m.name.to_owned()).collect();
+    assert_eq!(in_table.len(), MODULES.len(), "a name appears twice");
+    assert_eq!(in_table, on_disk);
+}
+
+/// What lets the texts be concatenated with an engine's, and loaded as WESL or naga_oil modules as they are.
+#[test]
+fn texts_are_plain_and_names_are_the_librarys_own() {
+    let mut failures = Vec::new();
+    for module in MODULES {
+        let text = wgsl::without_comments(module.source);
+        for line in text.lines() {
+            let line = line.trim_start();
+            let directive = [
+                "enable ",
+                "requires ",
+                "diagnostic(",
+                "diagnostic ",
+                "#",
+                "import ",
+            ];
+            if directive.iter().any(|word| line.starts_with(word)) {
+                failures.push(format!("{}: directive {line:?}", module.name));
+            }
+        }
+        for name in wgsl::identifiers(module.source) {
+            if name.ends_with('_') && name != "_" {
+                failures.push(format!("{}: {name} ends in _", module.name));
+            }
+        }
+        let names = wgsl::top_level_names(module.source);
+        if names.is_empty() {
+            failures.push(format!("{}: declares nothing", module.name));
+        }
+        for name in names {
+            let prefixes = ["shadow_", "Shadow", "SHADOW_"];
+            if !prefixes.iter().any(|prefix| name.starts_with(prefix)) {
+                failures.push(format!("{}: {name} is not the library's", module.name));
+            }
+        }
+        let composed = shader::compose(&[module.name]).expect("a module of the table");
+        let parsed = naga::front::wgsl::parse_str(&composed).expect("valid WGSL");
+        for (_, ty) in parsed.types.iter() {
+            let naga::TypeInner::Struct { members, .. } = &ty.inner else {
+                continue;
+            };
+            for member in members {
+                let name = member.name.as_deref().unwrap_or_default();
+                if name.ends_with(|c: char| c.is_ascii_digit()) {
+                    failures.push(format!("{}: member {name} ends in a digit", module.name));
+                }
+            }
+        }
+    }
+    report(&failures);
+}
+
+/// All modules go together, in one text, but for passes that are drawn in each other's place: no two modules declare the same
+/// name, unless it is that of an entry point in both.
+#[test]
+fn names_do_not_collide() {
+    let entry_points = |module: &ShaderModule| -> BTreeSet<String> {
+        let composed = shader::compose(&[module.name]).expect("a module of the table");
+        let parsed = wgsl::validate(&composed).unwrap_or_else(|error| panic!("{error}"));
+        parsed
+            .entry_points
+            .iter()
+            .map(|entry| entry.name.clone())
+            .collect()
+    };
+    let mut failures = Vec::new();
+    for (index, module) in MODULES.iter().enumerate() {
+        let names = wgsl::top_level_names(module.source);
+        for other in &MODULES[index + 1..] {
+            for name in names.intersection(&wgsl::top_level_names(other.source)) {
+                let both = [module, other].map(|module| entry_points(module).contains(name));
+                if both != [true, true] {
+                    failures.push(format!("{name} is in {} and {}", module.name, other.name));
+                }
+            }
+        }
+    }
+    report(&failures);
+}

@@ -1,0 +1,75 @@
+//! Asks any set of lights through `ShadowBindings`, and records their frames.
+
+use wgpu_shadows::{
+    OmniFrame, OmniShadow, ShadowBindings, ShadowBindingsDescriptor, ShadowError, ShadowReport,
+    ShadowSource, SpotFrame, SpotShadow,
+};
+
+use crate::support::gpu::Gpu;
+use crate::support::probe::{Point, PointShader};
+
+/// A bind group for a set of lights, and one question to them. Outlives every frame of the lights.
+pub struct Ask {
+    bindings: ShadowBindings,
+    shader: PointShader,
+}
+
+impl Ask {
+    /// `value` is a WGSL expression over `point.position` and `point.normal` that calls the lights' functions.
+    pub fn new(gpu: &Gpu, lights: &[(&str, ShadowSource<'_>)], value: &str) -> Self {
+        let descriptor = ShadowBindingsDescriptor {
+            visibility: wgpu::ShaderStages::COMPUTE,
+            lights,
+            ..Default::default()
+        };
+        let bindings = ShadowBindings::new(&gpu.device, &descriptor).expect("valid bindings");
+        let shader = PointShader::new(gpu, bindings.wgsl(), "f32", value, bindings.layout());
+        Self { bindings, shader }
+    }
+
+    /// One light by itself.
+    pub fn light(gpu: &Gpu, source: ShadowSource<'_>) -> Self {
+        let value = "shadow_light(point.position, point.normal)";
+        Self::new(gpu, &[("light", source)], value)
+    }
+
+    /// The light in slot `index` of a pool.
+    pub fn slot(gpu: &Gpu, pool: ShadowSource<'_>, index: u32) -> Self {
+        let value = format!("shadow_lights({index}u, point.position, point.normal)");
+        Self::new(gpu, &[("lights", pool)], &value)
+    }
+
+    /// Visibility from each point under the maps of the last submitted frame.
+    pub fn points(&self, gpu: &Gpu, points: &[Point]) -> Vec<f32> {
+        self.shader.ask(gpu, self.bindings.bind_group(), points)
+    }
+}
+
+/// Records a frame with `record` and submits it, or submits an empty encoder where the frame is refused.
+pub fn submitted<'a>(
+    gpu: &Gpu,
+    record: impl FnOnce(&mut wgpu::CommandEncoder) -> Result<&'a ShadowReport, ShadowError>,
+) -> Result<ShadowReport, ShadowError> {
+    let mut encoder = gpu.encoder();
+    let report = record(&mut encoder).cloned();
+    gpu.submit(encoder);
+    report
+}
+
+/// Records and submits a frame of a point light.
+pub fn record_omni(
+    gpu: &Gpu,
+    shadow: &mut OmniShadow,
+    frame: &OmniFrame<'_>,
+) -> Result<ShadowReport, ShadowError> {
+    submitted(gpu, |encoder| shadow.record(&gpu.device, encoder, frame))
+}
+
+/// Records and submits a frame of a spot light.
+pub fn record_spot(
+    gpu: &Gpu,
+    shadow: &mut SpotShadow,
+    frame: &SpotFrame<'_>,
+) -> Result<ShadowReport, ShadowError> {
+    submitted(gpu, |encoder| shadow.record(&gpu.device, encoder, frame))
+}

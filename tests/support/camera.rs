@@ -1,0 +1,206 @@
+//! Cameras of every kind that engines have, with the rays of their pixels.
+
+use glam::{DMat3, DMat4, DVec3, DVec4};
+use wgpu_shadows::CameraView;
+
+/// Where a camera stands and looks: view space is right-handed and looks along -z.
+#[derive(Clone, Copy, Debug)]
+pub struct Pose {
+    pub eye: DVec3,
+    /// Columns are right, up and backward in render space.
+    pub axes: DMat3,
+}
+
+impl Pose {
+    /// At `eye`, looking at `target`, with the head up.
+    pub fn looking_at(eye: DVec3, target: DVec3) -> Self {
+        let backward = (eye - target).normalize();
+        let right = DVec3::Y.cross(backward).normalize();
+        Self {
+            eye,
+            axes: DMat3::from_cols(right, backward.cross(right), backward),
+        }
+    }
+}
+
+/// What a camera sees of the space before it.
+#[derive(Clone, Copy, Debug)]
+pub enum Lens {
+    /// Sides as tangents of angles (left, right, bottom, top), which need not be symmetric; `far` may be infinite.
+    Perspective {
+        sides: [f64; 4],
+        near: f64,
+        far: f64,
+    },
+    /// Sides in world units.
+    Orthographic {
+        sides: [f64; 4],
+        near: f64,
+        far: f64,
+    },
+}
+
+#[derive(Clone, Copy, Debug)]
+pub struct Camera {
+    pub pose: Pose,
+    pub lens: Lens,
+    /// Near 1 and far 0 in place of near 0 and far 1.
+    pub reversed: bool,
+}
+
+impl Camera {
+    /// A symmetric perspective camera with an infinite reversed depth range, as modern engines have it.
+    pub fn modern(eye: DVec3, target: DVec3, fov_y: f64, aspect: f64) -> Self {
+        let top = (fov_y * 0.5).tan();
+        Self {
+            pose: Pose::looking_at(eye, target),
+            lens: Lens::Perspective {
+                sides: [-top * aspect, top * aspect, -top, top],
+                near: 0.1,
+                far: f64::INFINITY,
+            },
+            reversed: true,
+        }
+    }
+
+    pub fn clip_from_view(&self) -> DMat4 {
+        let (sides, perspective, near, far) = self.parts();
+        let [left, right, bottom, top] = sides;
+        let scale = (2.0 / (right - left), 2.0 / (top - bottom));
+        let middle = (
+            (right + left) / (right - left),
+            (top + bottom) / (top - bottom),
+        );
+        // Depth before the division by w: `a * z + b` with z negative in front of the eye.
+        let (a, b) = match (perspective, self.reversed, far.is_finite()) {
+            (true, false, true) => (far / (near - far), near * far / (near - far)),
+            (true, false, false) => (-1.0, -near),
+            (true, true, true) => (near / (far - near), near * far / (far - near)),
+            (true, true, false) => (0.0, near),
+            (false, false, _) => (-1.0 / (far - near), -near / (far - near)),
+            (false, true, _) => (1.0 / (far - near), far / (far - near)),
+        };
+        let rows = if perspective {
+            [
+                DVec4::new(scale.0, 0.0, middle.0, 0.0),
+                DVec4::new(0.0, scale.1, middle.1, 0.0),
+                DVec4::new(0.0, 0.0, a, b),
+                DVec4::new(0.0, 0.0, -1.0, 0.0),
+            ]
+        } else {
+            [
+                DVec4::new(scale.0, 0.0, 0.0, -middle.0),
+                DVec4::new(0.0, scale.1, 0.0, -middle.1),
+                DVec4::new(0.0, 0.0, a, b),
+                DVec4::new(0.0, 0.0, 0.0, 1.0),
+            ]
+        };
+        DMat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose()
+    }
+
+    pub fn view_from_render(&self) -> DMat4 {
+        let rotation = self.pose.axes.transpose();
+        DMat4::from_mat3_translation(rotation, -(rotation * self.pose.eye))
+    }
+
+    /// The matrices as an engine passes them.
+    pub fn view(&self) -> CameraView {
+        CameraView::new(
+            self.view_from_render().as_mat4(),
+            self.clip_from_view().as_mat4(),
+        )
+    }
+
+    /// The ray through a place of the picture, both coordinates in 0..1: its start and its direction per unit of depth.
+    pub fn ray(&self, across: f64, up: f64) -> (DVec3, DVec3) {
+        let (sides, perspective, ..) = self.parts();
+        let [left, right, bottom, top] = sides;
+        let place = (left + (right - left) * across, bottom + (top - bottom) * up);
+        let axes = self.pose.axes;
+        let offset = axes.x_axis * place.0 + axes.y_axis * place.1;
+        let forward = -axes.z_axis;
+        if perspective {
+            (self.pose.eye, forward + offset)
+        } else {
+            (self.pose.eye + offset, forward)
+        }
+    }
+
+    /// Is a point in the picture, nearer than `limit` along the view, and not within `margin` (a share of the picture and of
+    /// the depth) of its borders?
+    pub fn sees(&self, point: DVec3, limit: f64, margin: f64) -> bool {
+        let (sides, perspective, near, far) = self.parts();
+        let [left, right, bottom, top] = sides;
+        let place = self.pose.axes.transpose() * (point - self.pose.eye);
+        let depth = -place.z;
+        let slack = margin * depth.abs().max(near.abs());
+        if depth < near + slack || depth > far.min(limit) - slack {
+            return false;
+        }
+        let scale = if perspective { depth } else { 1.0 };
+        let across = (place.x / scale - left) / (right - left);
+        let up = (place.y / scale - bottom) / (top - bottom);
+        let inner = margin..=1.0 - margin;
+        inner.contains(&across) && inner.contains(&up)
+    }
+
+    fn parts(&self) -> ([f64; 4], bool, f64, f64) {
+        match self.lens {
+            Lens::Perspective { sides, near, far } => (sides, true, near, far),
+            Lens::Orthographic { sides, near, far } => (sides, false, near, far),
+        }
+    }
+}
+
+/// The matrices and the rays say the same: a point along a ray is projected back to where the ray started, inside the depth
+/// range, and its depth runs the right way.
+#[test]
+fn rays_project_to_their_pixels() {
+    let pose = Pose::looking_at(DVec3::new(3.0, 5.0, -7.0), DVec3::new(-1.0, 0.5, 2.0));
+    let sides = [-0.3, 0.9, -0.5, 0.2];
+    let lenses = [
+        Lens::Perspective {
+            sides,
+            near: 0.5,
+            far: 50.0,
+        },
+        Lens::Perspective {
+            sides,
+            near: 0.5,
+            far: f64::INFINITY,
+        },
+        Lens::Orthographic {
+            sides,
+            near: -2.0,
+            far: 50.0,
+        },
+    ];
+    for lens in lenses {
+        for reversed in [false, true] {
+            let camera = Camera {
+                pose,
+                lens,
+                reversed,
+            };
+            let clip_from_render = camera.clip_from_view() * camera.view_from_render();
+            for (across, up) in [(0.0, 0.0), (0.25, 0.8), (1.0, 0.5)] {
+                let (start, direction) = camera.ray(across, up);
+                let (.., near, far) = camera.parts();
+                let depth = |distance: f64| {
+                    let clip = clip_from_render * (start + direction * distance).extend(1.0);
+                    let ndc = clip.truncate() / clip.w;
+                    assert!((ndc.x - (2.0 * across - 1.0)).abs() < 1e-9);
+                    assert!((ndc.y - (2.0 * up - 1.0)).abs() < 1e-9);
+                    ndc.z
+                };
+                let (first, last) = if reversed { (1.0, 0.0) } else { (0.0, 1.0) };
+                assert!((depth(near) - first).abs() < 1e-9);
+                let inside = across > 0.0 && across < 1.0;
+                assert_eq!(camera.sees(start + direction * 3.0, 40.0, 1e-9), inside);
+                assert!(!camera.sees(start + direction * 3.0, 2.9, 1e-9));
+                assert!(!camera.sees(start + direction * (near - 0.1), 40.0, 1e-9));
+                assert!((depth(far.min(1e9)) - last).abs() < 1e-7);
+            }
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! One device for all tests of the run, loud about every error that nobody asked for.
+
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+
+/// A device, its queue, and the words by which a failure names the machine it happened on.
+pub struct Gpu {
+    pub device: wgpu::Device,
+    pub queue: wgpu::Queue,
+    pub adapter: wgpu::AdapterInfo,
+    /// One submission at a time: the OpenGL backend gives up when it waits long for its only context.
+    submitting: Mutex<()>,
+}
+
+/// What to ask of an instance and of a device, beyond the defaults.
+#[derive(Default)]
+pub struct GpuRequest {
+    pub features: wgpu::Features,
+    pub limits: wgpu::Limits,
+    /// The backend; none for the one that the run is on.
+    pub backend: Option<wgpu::Backends>,
+}
+
+/// The shared device.
+pub fn gpu() -> &'static Gpu {
+    static SHARED: OnceLock<Gpu> = OnceLock::new();
+    SHARED.get_or_init(|| Gpu::new(GpuRequest::default()))
+}
+
+/// A shared Vulkan device, whatever the run is on: for what wgpu's OpenGL backend cannot do.
+pub fn vulkan() -> &'static Gpu {
+    static SHARED: OnceLock<Gpu> = OnceLock::new();
+    if gpu().adapter.backend == wgpu::Backend::Vulkan {
+        return gpu();
+    }
+    SHARED.get_or_init(|| {
+        Gpu::new(GpuRequest {
+            backend: Some(wgpu::Backends::VULKAN),
+            ..Default::default()
+        })
+    })
+}
+
+impl Gpu {
+    /// A device of its own, for tests that need other features or limits than the default.
+    pub fn new(request: GpuRequest) -> Self {
+        let backends = request.backend.unwrap_or_else(backends);
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends,
+            ..wgpu::InstanceDescriptor::new_without_display_handle()
+        });
+        let adapters = pollster::block_on(instance.enumerate_adapters(backends));
+        // A software adapter gives every machine the same pixels, so it comes first.
+        let adapter = adapters
+            .iter()
+            .find(|adapter| adapter.get_info().device_type == wgpu::DeviceType::Cpu)
+            .or(adapters.first())
+            .unwrap_or_else(|| {
+                panic!(
+                    "no {backends:?} adapter. On Debian and Ubuntu a software one comes with `apt-get install \
+                     mesa-vulkan-drivers` (Vulkan) or `libegl1 libgl1-mesa-dri` (OpenGL)."
+                )
+            });
+        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("shadow tests"),
+            required_features: request.features,
+            required_limits: request.limits,
+            ..Default::default()
+        }))
+        .unwrap_or_else(|error| panic!("{}: {error}", adapter.get_info().name));
+        // The handler runs on the thread whose call went wrong, so the panic fails that thread's test and no other.
+        device.on_uncaptured_error(Arc::new(|error: wgpu::Error| {
+            panic!("uncaptured device error: {error}")
+        }));
+        Self {
+            adapter: adapter.get_info(),
+            device,
+            queue,
+            submitting: Mutex::new(()),
+        }
+    }
+
+    /// "name (driver) over backend", for messages.
+    pub fn describe(&self) -> String {
+        let info = &self.adapter;
+        format!("{} ({}) over {}", info.name, info.driver_info, info.backend)
+    }
+
+    pub fn encoder(&self) -> wgpu::CommandEncoder {
+        self.device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
+    }
+
+    /// Submits what `encoder` holds and waits until the device has done it.
+    pub fn submit(&self, encoder: wgpu::CommandEncoder) {
+        let _turn = self.turn();
+        let index = self.queue.submit([encoder.finish()]);
+        self.device
+            .poll(wgpu::PollType::Wait {
+                submission_index: Some(index),
+                timeout: None,
+            })
+            .expect("the device finishes its work");
+    }
+
+    /// A buffer that holds `contents`.
+    pub fn buffer(
+        &self,
+        contents: &[impl bytemuck::NoUninit],
+        usage: wgpu::BufferUsages,
+    ) -> wgpu::Buffer {
+        use wgpu::util::DeviceExt;
+        self.device
+            .create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: None,
+                contents: bytemuck::cast_slice(contents),
+                usage,
+            })
+    }
+
+    /// A shader module from WGSL.
+    pub fn shader(&self, source: &str) -> wgpu::ShaderModule {
+        self.device
+            .create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: None,
+                source: wgpu::ShaderSource::Wgsl(source.into()),
+            })
+    }
+
+    fn turn(&self) -> MutexGuard<'_, ()> {
+        // A test that panicked while it held the turn has left nothing half done.
+        self.submitting
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+fn backends() -> wgpu::Backends {
+    match std::env::var("SHADOW_TEST_BACKEND").as_deref() {
+        Err(_) | Ok("vulkan") => wgpu::Backends::VULKAN,
+        Ok("gl") => wgpu::Backends::GL,
+        Ok(other) => panic!("SHADOW_TEST_BACKEND must be vulkan or gl, got {other:?}"),
+    }
+}

@@ -1,0 +1,82 @@
+//! What a ray caster in f64 says of the shadows of a light at a place, away from their edges.
+
+use glam::DVec3;
+
+use crate::support::probe::Point;
+use crate::support::random::Random;
+use crate::support::scene::{Triangle, occluded};
+
+/// Receivers whose truth is the same over the whole footprint of a lookup.
+#[derive(Default)]
+pub struct Settled {
+    pub points: Vec<Point>,
+    pub dark: Vec<bool>,
+    /// Receivers left out because an edge of a shadow, or of the surface, crosses their footprint.
+    pub at_edges: usize,
+}
+
+impl Settled {
+    /// How many are dark, and how many lit.
+    pub fn counts(&self) -> [usize; 2] {
+        let dark = self.dark.iter().filter(|dark| **dark).count();
+        [dark, self.dark.len() - dark]
+    }
+
+    /// Every answer is the truth, give or take the rounding of a sum of at most 64 weights, sharpened three times.
+    pub fn assert_agrees(&self, seen: &[f32], name: &str) {
+        for ((point, dark), seen) in self.points.iter().zip(&self.dark).zip(seen) {
+            let wanted = if *dark { 0.0 } else { 1.0 };
+            assert!(
+                (seen - wanted).abs() <= 192.0 * f32::EPSILON,
+                "{name}: {seen} where {wanted} is true, at {point:?}"
+            );
+        }
+    }
+}
+
+/// `count` receivers on the lit sides of `triangles`, of which those remain that are settled: the ray through the receiver and
+/// sixteen rays around it, `tangent` (the tangent of an angle) aside, meet the receiver's plane at places that are all dark or all lit.
+pub fn settled(
+    triangles: &[Triangle],
+    light: DVec3,
+    tangent: f64,
+    count: usize,
+    random: &mut Random,
+    wanted: impl Fn(DVec3) -> bool,
+) -> Settled {
+    let mut settled = Settled::default();
+    for _ in 0..count {
+        let triangle = triangles[random.index(triangles.len())];
+        let place = triangle.point(random.unit(), random.unit());
+        let to_light = light - place;
+        let normal = triangle.normal() * triangle.normal().dot(to_light).signum();
+        let facing = normal.dot(to_light.normalize());
+        // Surfaces nearly edge on see their footprint stretched over all that is around them.
+        if facing < 0.1 || !wanted(place) {
+            continue;
+        }
+        let dark_at = |at: DVec3| occluded(triangles, at, light - at, 1e-7);
+        let dark = dark_at(place);
+        let from_light = -to_light;
+        let side = from_light.any_orthonormal_vector();
+        let across = side.cross(from_light.normalize());
+        let around = (0..16).map(|step| {
+            let angle = f64::from(step) * std::f64::consts::TAU / 8.0;
+            let radius = tangent * if step < 8 { 1.0 } else { 0.4 };
+            let aside = (side * angle.cos() + across * angle.sin()) * from_light.length();
+            let direction = from_light + aside * radius;
+            light + direction * (normal.dot(from_light) / normal.dot(direction))
+        });
+        let mut all_same = true;
+        for at in around {
+            all_same &= dark_at(at) == dark;
+        }
+        if all_same {
+            settled.points.push(Point::rounded(place, normal));
+            settled.dark.push(dark);
+        } else {
+            settled.at_edges += 1;
+        }
+    }
+    settled
+}

@@ -1,0 +1,16 @@
+//! What several tests share: a device, small scenes with their truth, and ways to ask the library for its answers.
+
+pub mod ask;
+pub mod camera;
+pub mod golden;
+pub mod gpu;
+pub mod local_truth;
+pub mod picture;
+pub mod probe;
+pub mod random;
+pub mod random_scene;
+pub mod readback;
+pub mod rounding;
+pub mod scene;
+pub mod watched;
+pub mod wgsl;

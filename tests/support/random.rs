@@ -1,0 +1,50 @@
+//! Random numbers that are the same on every run and every machine.
+
+use glam::DVec3;
+
+/// SplitMix64 (Steele, Lea and Flood 2014): one word of state, good enough to scatter points.
+pub struct Random(u64);
+
+impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// Evenly in `0.0..1.0`.
+    pub fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    pub fn range(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    pub fn index(&mut self, count: usize) -> usize {
+        (self.unit() * count as f64) as usize
+    }
+
+    /// Evenly in a box.
+    pub fn point(&mut self, low: DVec3, high: DVec3) -> DVec3 {
+        DVec3::new(
+            self.range(low.x, high.x),
+            self.range(low.y, high.y),
+            self.range(low.z, high.z),
+        )
+    }
+
+    /// Evenly over the unit sphere.
+    pub fn direction(&mut self) -> DVec3 {
+        let y = self.range(-1.0, 1.0);
+        let angle = self.range(0.0, std::f64::consts::TAU);
+        let radius = (1.0 - y * y).sqrt();
+        DVec3::new(radius * angle.cos(), y, radius * angle.sin())
+    }
+}

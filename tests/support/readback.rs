@@ -1,0 +1,152 @@
+//! Textures and buffers back on the CPU.
+
+use crate::support::gpu::Gpu;
+
+/// One layer of a depth texture, rows from the top.
+///
+/// A compute shader gathers the texels: the OpenGL backend neither copies nor loads from depth textures.
+pub fn depth_layer(gpu: &Gpu, texture: &wgpu::Texture, layer: u32) -> Vec<f32> {
+    let size = texture.width();
+    let texels = u64::from(size) * u64::from(size);
+    let shader = gpu.shader(DEPTH_SHADER);
+    let pipeline = gpu
+        .device
+        .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some("depth readback"),
+            layout: None,
+            module: &shader,
+            entry_point: Some("read"),
+            compilation_options: Default::default(),
+            cache: None,
+        });
+    let output = storage(gpu, texels * 4);
+    let layer_buffer = gpu.buffer(&[layer, 0, 0, 0], wgpu::BufferUsages::UNIFORM);
+    let sampler = gpu.device.create_sampler(&Default::default());
+    let view = texture.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(wgpu::TextureViewDimension::D2Array),
+        ..Default::default()
+    });
+    let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("depth readback"),
+        layout: &pipeline.get_bind_group_layout(0),
+        entries: &[
+            wgpu::BindGroupEntry {
+                binding: 0,
+                resource: wgpu::BindingResource::TextureView(&view),
+            },
+            wgpu::BindGroupEntry {
+                binding: 1,
+                resource: output.as_entire_binding(),
+            },
+            wgpu::BindGroupEntry {
+                binding: 2,
+                resource: layer_buffer.as_entire_binding(),
+            },
+            wgpu::BindGroupEntry {
+                binding: 3,
+                resource: wgpu::BindingResource::Sampler(&sampler),
+            },
+        ],
+    });
+    let mut encoder = gpu.encoder();
+    {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &bind_group, &[]);
+        pass.dispatch_workgroups(size.div_ceil(8), size.div_ceil(8), 1);
+    }
+    gpu.submit(encoder);
+    buffer(gpu, &output)
+}
+
+const DEPTH_SHADER: &str = "
+@group(0) @binding(0) var map: texture_depth_2d_array;
+@group(0) @binding(1) var<storage, read_write> depths: array<f32>;
+@group(0) @binding(2) var<uniform> layer: vec4<u32>;
+@group(0) @binding(3) var point_sampler: sampler;
+
+@compute @workgroup_size(8, 8)
+fn read(@builtin(global_invocation_id) id: vec3<u32>) {
+    let size = textureDimensions(map);
+    if all(id.xy < size) {
+        // Where four texels meet, of which the last component is the upper left one.
+        let corner = vec2<f32>(id.xy + 1u) / vec2<f32>(size);
+        depths[id.y * size.x + id.x] = textureGather(map, point_sampler, corner, layer.x).w;
+    }
+}
+";
+
+/// A zeroed buffer that a shader may write and [`buffer`] may read.
+pub fn storage(gpu: &Gpu, size: u64) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("test output"),
+        size,
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+        mapped_at_creation: false,
+    })
+}
+
+/// What a buffer created with `COPY_SRC` holds.
+pub fn buffer<T: bytemuck::Pod>(gpu: &Gpu, source: &wgpu::Buffer) -> Vec<T> {
+    let staging = staging(gpu, source.size());
+    let mut encoder = gpu.encoder();
+    encoder.copy_buffer_to_buffer(source, 0, &staging, 0, source.size());
+    gpu.submit(encoder);
+    bytemuck::pod_collect_to_vec(&mapped(gpu, &staging))
+}
+
+/// An `Rgba8Unorm` texture created with `COPY_SRC`.
+pub fn rgba8(gpu: &Gpu, texture: &wgpu::Texture) -> image::RgbaImage {
+    let (width, height) = (texture.width(), texture.height());
+    let bytes_per_row = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let staging = staging(gpu, u64::from(bytes_per_row) * u64::from(height));
+    let mut encoder = gpu.encoder();
+    encoder.copy_texture_to_buffer(
+        texture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo {
+            buffer: &staging,
+            layout: wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(bytes_per_row),
+                rows_per_image: None,
+            },
+        },
+        texture.size(),
+    );
+    gpu.submit(encoder);
+    let pixels = mapped(gpu, &staging)
+        .chunks(bytes_per_row as usize)
+        .flat_map(|row| row[..4 * width as usize].to_vec())
+        .collect();
+    image::RgbaImage::from_raw(width, height, pixels).expect("rows of four bytes a pixel")
+}
+
+fn staging(gpu: &Gpu, size: u64) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("test staging"),
+        size,
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
+fn mapped(gpu: &Gpu, staging: &wgpu::Buffer) -> Vec<u8> {
+    let (sender, receiver) = std::sync::mpsc::channel();
+    staging.map_async(wgpu::MapMode::Read, .., move |result| {
+        let _ = sender.send(result);
+    });
+    // Another thread's poll may be the one that calls back, so the channel is what is waited for.
+    loop {
+        gpu.device
+            .poll(wgpu::PollType::wait_indefinitely())
+            .expect("the device finishes its work");
+        if let Ok(result) = receiver.recv_timeout(std::time::Duration::from_millis(100)) {
+            result.expect("the staging buffer maps");
+            break;
+        }
+    }
+    staging
+        .get_mapped_range(..)
+        .expect("the buffer is mapped")
+        .to_vec()
+}

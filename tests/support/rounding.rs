@@ -1,0 +1,99 @@
+//! How far f32 arithmetic may take a receiver from its f64 twin, term by term.
+//!
+//! With u = 2^-24, a sum of k products in f32 errs by at most k·u times the sum of their magnitudes to first order, fused or
+//! not. Every bound below has that form, with the counts of `wgsl/view.wgsl` and `wgsl/bias_*.wgsl` rounded up: 6 where a
+//! row of a matrix meets a vector (four products, and one rounding each for the vector's own entries and for the division by
+//! w, which is one).
+
+use glam::{DVec2, DVec3, Mat4, Vec3, Vec4};
+use wgpu_shadows::reference::Receiver;
+use wgpu_shadows::{Bias, Filter, ShadowViewUniform};
+
+/// Unit roundoff of f32.
+pub const U: f64 = 1.0 / (1u64 << 24) as f64;
+
+/// Bounds of a receiver's errors.
+#[derive(Clone, Copy, Debug)]
+pub struct Band {
+    pub texel: DVec2,
+    pub depth: f64,
+    pub gradient: DVec2,
+}
+
+/// The band of the receiver that `bias` makes of `position` and `normal`, both as f32 values; none where the receiver is so
+/// nearly edge on that its gradient has no significant digit.
+pub fn band(
+    view: &ShadowViewUniform,
+    filter: Filter,
+    bias: Bias,
+    position: DVec3,
+    normal: DVec3,
+    receiver: &Receiver,
+) -> Option<Band> {
+    let relative = position - Vec3::from_array(view.anchor).as_dvec3();
+    let rows = [view.plane_across, view.plane_down, view.plane_depth];
+    let rows = rows.map(|row| Vec4::from_array(row).as_dvec4());
+    let homogeneous = normal.extend(-normal.dot(relative));
+    let magnitude = normal.abs().extend(2.0 * normal.abs().dot(relative.abs()));
+    let plane = DVec3::from_array(rows.map(|row| row.dot(homogeneous)));
+    let plane_error = DVec3::from_array(rows.map(|row| 6.0 * U * row.abs().dot(magnitude)));
+    // How far the bias moves the receiver in world units, and the error of that.
+    let (moved, moved_error) = match bias {
+        // A product of three factors, one of them a sum of two plane components.
+        Bias::Auto | Bias::NormalOffset => {
+            let texels = f64::from(view.offset_texels) + f64::from(view.lateral_error);
+            let moved = texels * (plane.x.abs() + plane.y.abs());
+            (
+                moved,
+                texels * (plane_error.x + plane_error.y) + 6.0 * U * moved,
+            )
+        }
+        // A normalisation (a reciprocal root within two ulps), a product, and the cosine's own four roundings.
+        _ => {
+            let moved = f64::from(view.manual_constant + 2.0 * view.manual_slope);
+            (moved, 16.0 * U * moved)
+        }
+    };
+    let reach = relative.abs() + DVec3::splat(moved);
+    let position_error = 2.0 * U * reach + DVec3::splat(moved_error);
+    let matrix = Mat4::from_cols_array_2d(&view.texel_from_anchor);
+    let place_error = |row: usize| {
+        let row = matrix.row(row).as_dvec4().abs();
+        6.0 * U * row.dot(reach.extend(1.0)) + row.truncate().dot(position_error)
+    };
+    let texel = DVec2::new(place_error(0), place_error(1));
+    let follows = matches!(bias, Bias::Auto) && filter.compares_each_texel();
+    let gradient = if follows {
+        // A quotient: the errors of both sides, relative to the divisor.
+        let divisor = plane.z.abs() - plane_error.z;
+        if divisor <= 0.0 {
+            return None;
+        }
+        let steep = receiver.gradient.abs();
+        (plane_error.truncate() + steep * plane_error.z) / divisor + steep * (2.0 * U)
+    } else {
+        DVec2::ZERO
+    };
+    // The slack for rounding is itself a product and a sum.
+    let lateral = f64::from(view.lateral_error);
+    let steep = receiver.gradient.abs().element_sum();
+    let slack = lateral * gradient.element_sum() + 6.0 * U * (lateral * steep + 1.0);
+    Some(Band {
+        texel,
+        depth: place_error(2) + slack,
+        gradient,
+    })
+}
+
+impl Band {
+    /// Error of the reference depth at the farthest texel of the kernel: the receiver's own, the gradient's over the kernel's
+    /// reach, that of the place from which the gradient starts, and four roundings of the sum.
+    pub fn reference_depth(&self, filter: Filter, receiver: &Receiver) -> f64 {
+        let reach = filter.reach_texels() + 0.5;
+        let steep = receiver.gradient.abs();
+        self.depth
+            + self.gradient.element_sum() * reach
+            + steep.dot(self.texel)
+            + 4.0 * U * (receiver.depth.abs() + steep.element_sum() * reach)
+    }
+}
