@@ -216,7 +216,7 @@ pub enum CasterError {
 pub enum BindingsError {
     /// A light's name becomes part of WGSL identifiers.
     #[error(
-        "ShadowBindingsDescriptor::lights: name must be a lower-case WGSL identifier ([a-z][a-z0-9_]*, no `__`, no `_` or digit at the end, no `map_` or `views_` in front, none of the library's own), got {name:?}"
+        "ShadowBindingsDescriptor::lights: name must be a lower-case WGSL identifier ([a-z][a-z0-9_]*, no `__`, no `_` or digit at the end, no `map_`, `view_` or `views_` in front, none of the library's own), got {name:?}"
     )]
     Name {
         /// The name asked for.

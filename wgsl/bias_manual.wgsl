@@ -7,5 +7,6 @@ fn shadow_receiver_manual(view: ShadowView, position: vec3<f32>, normal: vec3<f3
     let toward_light = normalize(select(view.light.xyz, -relative, view.light.w > 0.0));
     let facing = dot(normal, toward_light);
     let distance = max(view.manual_slope * (1.0 - facing), view.manual_constant);
-    return shadow_receiver_at(view, relative + toward_light * distance, vec2<f32>(0.0), 0.0);
+    let moved = relative + toward_light * distance;
+    return shadow_receiver_at(view, position, moved, vec2<f32>(0.0), 0.0);
 }

@@ -18,5 +18,5 @@ fn shadow_receiver_normal_offset(
     let growth = texels * (abs(plane.x) + abs(plane.y)) * max(dot(shadow_w_row(view).xyz, normal), 0.0);
     let distance = offset / (1.0 - min(growth, 0.9)) + view.offset_world;
     let moved = relative + normal * select(0.0, distance, distance > 0.0);
-    return shadow_receiver_at(view, moved, vec2<f32>(0.0), view.depth_error);
+    return shadow_receiver_at(view, position, moved, vec2<f32>(0.0), view.depth_error);
 }

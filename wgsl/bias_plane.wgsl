@@ -17,10 +17,11 @@ fn shadow_receiver_plane(view: ShadowView, position: vec3<f32>, normal: vec3<f32
     let plane = shadow_plane(view, lifted, normal);
     // A plane seen edge on has no gradient, and neither has a normal that is zero or not a number.
     if !(abs(plane.z) > 0.0) {
-        return shadow_receiver_at(view, relative, vec2<f32>(0.0), view.depth_error);
+        return shadow_receiver_at(view, position, relative, vec2<f32>(0.0), view.depth_error);
     }
     let limit = vec2<f32>(SHADOW_MAX_GRADIENT);
     let gradient = clamp(-plane.xy / plane.z, -limit, limit);
     let steepness = abs(gradient.x) + abs(gradient.y);
-    return shadow_receiver_at(view, lifted, gradient, view.lateral_error * steepness + view.depth_error);
+    let slack = view.lateral_error * steepness + view.depth_error;
+    return shadow_receiver_at(view, position, lifted, gradient, slack);
 }

@@ -16,7 +16,8 @@ struct ShadowView {
     // A point of render space inside the view.
     anchor: vec3<f32>,
     layer: u32,
-    // Texels between which a kernel stays inside the map: x and y from, x and y to. Empty (from > to) where nothing casts.
+    // Texels between which a lookup stays inside the map, kernel and bias included: x and y from, x and y to. Empty (from > to)
+    // where nothing casts.
     inner: vec4<f32>,
     map_size: f32,
     // Rounding error of a comparison: absolute in ndc depth, relative to the depth, and across the map in texels.
@@ -56,34 +57,43 @@ struct ShadowReceiver {
     sharpness: f32,
     // Radius of a penumbra in texels per difference of depth.
     penumbra: vec2<f32>,
-    // False where the map says nothing of this place: beyond its sides or its far plane, behind a local light, outside its cone
-    // or range.
+    // `shadow_view_holds` of the place: where it is false, the lookup means nothing and the place is lit.
     inside: bool,
 }
 
-// The receiver at `relative` to the anchor, with `depth_offset` toward the light.
-fn shadow_receiver_at(
-    view: ShadowView,
-    relative: vec3<f32>,
-    gradient: vec2<f32>,
-    depth_offset: f32,
-) -> ShadowReceiver {
+// Does the map say anything of a place in render space: inside its sides, not beyond its far plane, in front of a local light
+// and within its cone and range? Where it does not, the place is lit.
+fn shadow_view_holds(view: ShadowView, position: vec3<f32>) -> bool {
+    let relative = position - view.anchor;
     let place = view.texel_from_anchor * vec4<f32>(relative, 1.0);
     let texel = place.xy / place.w;
-    let depth = place.z / place.w;
     let within = all(texel >= view.inner.xy) && all(texel <= view.inner.zw);
     let distance_squared = dot(relative, relative);
     let reached = distance_squared <= view.range * view.range
         && -dot(relative, view.light.xyz) >= view.cone_cosine * sqrt(distance_squared);
+    return within && reached && place.w > 0.0 && place.z >= 0.0;
+}
+
+// The receiver of a place in render space that the bias has moved to `moved`, relative to the anchor, with `depth_offset`
+// toward the light.
+fn shadow_receiver_at(
+    view: ShadowView,
+    position: vec3<f32>,
+    moved: vec3<f32>,
+    gradient: vec2<f32>,
+    depth_offset: f32,
+) -> ShadowReceiver {
+    let place = view.texel_from_anchor * vec4<f32>(moved, 1.0);
+    let depth = place.z / place.w;
     var receiver: ShadowReceiver;
-    receiver.texel = texel;
+    receiver.texel = place.xy / place.w;
     receiver.depth = depth + depth_offset + depth * view.depth_error_relative;
     receiver.gradient = gradient;
     receiver.layer = view.layer;
     receiver.map_size = view.map_size;
     receiver.sharpness = view.sharpness;
     receiver.penumbra = view.penumbra;
-    receiver.inside = within && reached && place.w > 0.0 && depth >= 0.0;
+    receiver.inside = shadow_view_holds(view, position);
     return receiver;
 }
 

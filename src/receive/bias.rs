@@ -1,5 +1,7 @@
 //! How a receiver is kept from shadowing itself.
 
+use std::f64::consts::SQRT_2;
+
 use crate::fit::ShadowView;
 use crate::receive::Filter;
 
@@ -97,15 +99,14 @@ impl Bias {
     pub(crate) fn worst_gap_world(self, filter: Filter, view: &ShadowView) -> f32 {
         let texel = f64::from(view.texel_size_world().max_element());
         let rounding = view.depth_error_world() + view.position_error_world();
+        let lateral = lateral_error_texels(view);
+        let lift = match self {
+            Self::Manual { constant, slope } => f64::from(constant.max(slope)),
+            Self::Auto | Self::NormalOffset => self.offset_texels(filter) * texel * SQRT_2,
+        };
         // One more reach of the filter: a texel on the side where the surface falls away is compared with the receiver's own
         // depth, or with its one offset depth, which there lies that much further above the surface.
-        let texels =
-            filter.reach_texels() + self.offset_texels(filter) + lateral_error_texels(view);
-        let gap = match self {
-            Self::Manual { constant, slope } => f64::from(constant.max(slope)),
-            // |nx| + |ny| is at most the square root of two.
-            Self::Auto | Self::NormalOffset => texels * texel * std::f64::consts::SQRT_2 + rounding,
-        };
+        let gap = lift + (filter.reach_texels() + lateral) * texel * SQRT_2 + rounding;
         gap as f32
     }
 }

@@ -67,6 +67,8 @@ impl Default for ShadowBindingsDescriptor<'_> {
 /// `shadow_NAME(index: u32, position: vec3<f32>, normal: vec3<f32>) -> f32`): visibility in [0, 1] of
 /// the light from `position` (render space) on a surface with geometric normal `normal` (unit length, on the side that is
 /// shaded); and `shadow_geometric_normal(position)`. Where the map says nothing, beyond its sides or its far plane, it is 1.
+/// `shadow_view_NAME(position)` (for pools with the index in front) tells which view serves a place, for a tint of cascades or
+/// faces: the number of the layer, or the number of layers where none does.
 /// The variables `shadow_map_NAME` and `shadow_views_NAME` are the light's own texture and `array<ShadowView, N>`, for engines
 /// that want a lookup of their own beside it.
 #[derive(Debug)]
@@ -156,6 +158,7 @@ fn is_taken(name: &str) -> bool {
     in_modules
         || ["point_sampler", "comparison_sampler"].contains(&name)
         || name.starts_with("map_")
+        || name.starts_with("view_")
         || name.starts_with("views_")
 }
 

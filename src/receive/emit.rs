@@ -43,78 +43,101 @@ pub(crate) fn wgsl(
     Ok(text)
 }
 
-/// Bindings and function of one light.
+/// Bindings and functions of one light.
 fn light_wgsl(name: &str, receiver: &Receiver<'_>, binding: u32) -> String {
     let count = receiver.view_count;
-    let per_light = receiver.views_per_light;
-    let (parameter, first) = if receiver.indexed {
-        ("index: u32, ", format!("index * {per_light}u"))
+    let (parameter, argument) = if receiver.indexed {
+        ("index: u32, ", "index, ")
     } else {
-        ("", "0u".to_owned())
+        ("", "")
     };
-    let guard = if receiver.indexed {
-        format!(
-            "    if index >= {}u {{\n        return 1.0;\n    }}\n",
-            count / per_light
-        )
-    } else {
-        String::new()
+    let choice = match receiver.selection {
+        Selection::FirstInside => first_that_holds(name, receiver),
+        Selection::CubeFace => face_that_holds(name, receiver),
     };
-    let body = match receiver.selection {
-        Selection::FirstInside => first_inside(name, receiver),
-        Selection::CubeFace => match receiver.sampling.filter.directions() {
-            None => cube_face(name, receiver),
-            Some((offsets, samples)) => cube_directions(name, receiver, offsets, samples),
-        },
+    let lookup = match receiver.sampling.filter.directions() {
+        None => single_lookup(name, receiver, argument),
+        Some((offsets, samples)) => mean_lookup(name, receiver, argument, offsets, samples),
     };
     format!(
         "
 @group(SHADOW_GROUP) @binding({binding}) var<uniform> shadow_views_{name}: array<ShadowView, {count}>;
 @group(SHADOW_GROUP) @binding({map}) var shadow_map_{name}: texture_depth_2d_array;
 
-// Visibility in [0, 1]; 1 where the map says nothing.
+// The view, and so the layer, that serves a place; {count} where none does.
+fn shadow_view_{name}({parameter}position: vec3<f32>) -> u32 {{
+{choice}    return {count}u;
+}}
+
+// Visibility in [0, 1]; 1 where no view serves the place.
 fn shadow_{name}({parameter}position: vec3<f32>, normal: vec3<f32>) -> f32 {{
-{guard}    let first = {first};
-{body}}}
+{lookup}}}
 ",
         map = binding + 1,
     )
 }
 
-/// The first view that holds the whole kernel.
-fn first_inside(name: &str, receiver: &Receiver<'_>) -> String {
-    let per_light = receiver.views_per_light;
-    let make_receiver = make_receiver(receiver);
-    let lookup = lookup(name, receiver);
+/// The first of a light's views that holds the place: cascades, near to far, or the one view of a spot.
+fn first_that_holds(name: &str, receiver: &Receiver<'_>) -> String {
+    let (first, end) = view_range(receiver);
     format!(
-        "    for (var i = 0u; i < {per_light}u; i++) {{
-        let receiver = {make_receiver}(shadow_views_{name}[first + i], position, normal);
-        if receiver.inside {{
-            return {lookup};
+        "    for (var view = {first}; view < {end}; view++) {{
+        if shadow_view_holds(shadow_views_{name}[view], position) {{
+            return view;
         }}
     }}
-    return 1.0;
 "
     )
 }
 
-/// The face on which the place lies as seen from the light.
-fn cube_face(name: &str, receiver: &Receiver<'_>) -> String {
+/// The face on which the place lies as seen from the light, if it holds it.
+fn face_that_holds(name: &str, receiver: &Receiver<'_>) -> String {
+    let (first, end) = view_range(receiver);
+    format!(
+        "    let view = {first} + shadow_cube_face(position - shadow_views_{name}[{first}].anchor);
+    if view < {end} && shadow_view_holds(shadow_views_{name}[view], position) {{
+        return view;
+    }}
+"
+    )
+}
+
+/// First view and end of a light's views; an index past the pool has none.
+fn view_range(receiver: &Receiver<'_>) -> (String, String) {
+    let (count, per_light) = (receiver.view_count, receiver.views_per_light);
+    if receiver.indexed {
+        let end = format!("min(index * {per_light}u + {per_light}u, {count}u)");
+        (format!("index * {per_light}u"), end)
+    } else {
+        ("0u".to_owned(), format!("{count}u"))
+    }
+}
+
+fn single_lookup(name: &str, receiver: &Receiver<'_>, argument: &str) -> String {
+    let count = receiver.view_count;
     let make_receiver = make_receiver(receiver);
     let lookup = lookup(name, receiver);
     format!(
-        "    let face = shadow_cube_face(position - shadow_views_{name}[first].anchor);
-    let receiver = {make_receiver}(shadow_views_{name}[first + face], position, normal);
-    if !receiver.inside {{
+        "    let view = shadow_view_{name}({argument}position);
+    if view == {count}u {{
         return 1.0;
     }}
+    let receiver = {make_receiver}(shadow_views_{name}[view], position, normal);
     return {lookup};
 "
     )
 }
 
 /// The mean over directions around the place's own, each on its own face.
-fn cube_directions(name: &str, receiver: &Receiver<'_>, offsets: &str, samples: u32) -> String {
+fn mean_lookup(
+    name: &str,
+    receiver: &Receiver<'_>,
+    argument: &str,
+    offsets: &str,
+    samples: u32,
+) -> String {
+    let count = receiver.view_count;
+    let (first, _) = view_range(receiver);
     let make_receiver = make_receiver(receiver);
     let lookup = lookup(name, receiver);
     let meets = match receiver.sampling.bias {
@@ -122,22 +145,22 @@ fn cube_directions(name: &str, receiver: &Receiver<'_>, offsets: &str, samples: 
         Bias::Auto | Bias::NormalOffset => "shadow_direction_on_plane(from_light, normal, offset)",
     };
     format!(
-        "    let anchor = shadow_views_{name}[first].anchor;
-    let from_light = position - anchor;
-    if length(from_light) > shadow_views_{name}[first].range {{
+        "    let light = shadow_views_{name}[{first}];
+    let from_light = position - light.anchor;
+    if length(from_light) > light.range {{
         return 1.0;
     }}
-    let radius = shadow_direction_radius(shadow_views_{name}[first], position);
+    let radius = shadow_direction_radius(light, position);
     var lit = 0.0;
     for (var i = 0u; i < {samples}u; i++) {{
         let offset = {offsets}(i) * radius;
-        let place = {meets};
-        let face = first + shadow_cube_face(place);
-        let receiver = {make_receiver}(shadow_views_{name}[face], anchor + place, normal);
-        if receiver.inside {{
-            lit += {lookup};
-        }} else {{
+        let place = light.anchor + {meets};
+        let view = shadow_view_{name}({argument}place);
+        if view == {count}u {{
             lit += 1.0;
+        }} else {{
+            let receiver = {make_receiver}(shadow_views_{name}[view], place, normal);
+            lit += {lookup};
         }}
     }}
     return lit / {samples}.0;

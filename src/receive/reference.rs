@@ -37,7 +37,7 @@ pub struct Receiver {
     pub gradient: DVec2,
     /// Radius of a penumbra in texels per difference of depth.
     pub penumbra: DVec2,
-    /// False where the map says nothing of this place; visibility is 1 there.
+    /// [`holds`] of the place; where it is false, visibility is 1.
     pub inside: bool,
 }
 
@@ -65,9 +65,9 @@ pub fn receiver(
                 let gradient =
                     (-plane.truncate() / plane.z).clamp(DVec2::splat(-1e4), DVec2::splat(1e4));
                 let slack = lateral_error * (gradient.x.abs() + gradient.y.abs()) + depth_error;
-                receiver_at(view, lifted, gradient, slack)
+                receiver_at(view, position, lifted, gradient, slack)
             } else {
-                receiver_at(view, relative, DVec2::ZERO, depth_error)
+                receiver_at(view, position, relative, DVec2::ZERO, depth_error)
             }
         }
         BiasScheme::NormalOffset => {
@@ -77,7 +77,7 @@ pub fn receiver(
                 texels * clip_w(view, relative).max(0.0) * steepness / (1.0 - growth.min(0.9));
             let distance = offset + f64::from(view.offset_world);
             let moved = relative + normal * if distance > 0.0 { distance } else { 0.0 };
-            receiver_at(view, moved, DVec2::ZERO, depth_error)
+            receiver_at(view, position, moved, DVec2::ZERO, depth_error)
         }
         BiasScheme::Manual => {
             let light = Vec4::from_array(view.light).as_dvec4();
@@ -89,7 +89,13 @@ pub fn receiver(
             .normalize();
             let slope = f64::from(view.manual_slope) * (1.0 - normal.dot(toward_light));
             let distance = slope.max(f64::from(view.manual_constant));
-            receiver_at(view, relative + toward_light * distance, DVec2::ZERO, 0.0)
+            receiver_at(
+                view,
+                position,
+                relative + toward_light * distance,
+                DVec2::ZERO,
+                0.0,
+            )
         }
     }
 }
@@ -264,26 +270,34 @@ fn plane_across_map(view: &ShadowViewUniform, relative: DVec3, normal: DVec3) ->
     )
 }
 
-fn receiver_at(
-    view: &ShadowViewUniform,
-    relative: DVec3,
-    gradient: DVec2,
-    offset: f64,
-) -> Receiver {
+/// Does the map say anything of a place in render space? Where it does not, the place is lit.
+pub fn holds(view: &ShadowViewUniform, position: DVec3) -> bool {
+    let relative = position - Vec3::from_array(view.anchor).as_dvec3();
     let place = matrix(view) * relative.extend(1.0);
     let texel = place.truncate().truncate() / place.w;
-    let depth = place.z / place.w;
     let inner = Vec4::from_array(view.inner).as_dvec4();
     let within = texel.cmpge(DVec2::new(inner.x, inner.y)).all()
         && texel.cmple(DVec2::new(inner.z, inner.w)).all();
     let light = Vec4::from_array(view.light).as_dvec4();
     let reached = relative.length() <= f64::from(view.range)
         && -relative.dot(light.truncate()) >= f64::from(view.cone_cosine) * relative.length();
+    within && reached && place.w > 0.0 && place.z >= 0.0
+}
+
+fn receiver_at(
+    view: &ShadowViewUniform,
+    position: DVec3,
+    moved: DVec3,
+    gradient: DVec2,
+    offset: f64,
+) -> Receiver {
+    let place = matrix(view) * moved.extend(1.0);
+    let depth = place.z / place.w;
     Receiver {
-        texel,
+        texel: place.truncate().truncate() / place.w,
         depth: depth + offset + depth * f64::from(view.depth_error_relative),
         gradient,
         penumbra: Vec2::from_array(view.penumbra).as_dvec2(),
-        inside: within && reached && place.w > 0.0 && depth >= 0.0,
+        inside: holds(view, position),
     }
 }

@@ -25,7 +25,7 @@ pub struct ShadowViewUniform {
     pub anchor: [f32; 3],
     /// Layer of the map.
     pub layer: u32,
-    /// Texels between which a kernel stays inside the map: x and y from, x and y to.
+    /// Texels between which a lookup stays inside the map, kernel and bias included: x and y from, x and y to.
     pub inner: [f32; 4],
     /// Texels per side.
     pub map_size: f32,
@@ -71,12 +71,15 @@ pub(crate) struct Sampling {
     pub bias: Bias,
 }
 
+/// What rounding may move a lookup by: 6uN is 1/350 of a texel at N = 8192.
+const ROUNDING_TEXELS: f64 = 1.0 / 64.0;
+
 impl Sampling {
     /// Texels by which a lookup may leave the place of its receiver: the filter's reach, the way that an offset along the
-    /// normal can lead across the map, and 1/64 for rounding (6uN is 1/350 of a texel at N = 8192).
+    /// normal can lead across the map, and rounding.
     pub fn border_texels(&self) -> f64 {
         let sideways = self.bias.offset_texels(self.filter) * std::f64::consts::SQRT_2;
-        self.filter.reach_texels() + sideways + 1.0 / 64.0
+        self.filter.reach_texels() + sideways + ROUNDING_TEXELS
     }
 
     /// Whole texels kept free on every side of a fitted map so that no kernel leaves it.
@@ -103,9 +106,9 @@ pub(crate) fn view_uniform(view: &ShadowView, sampling: &Sampling) -> ShadowView
     // component along texel x is a product with the inverse's first column.
     let anchor_from_texel = texel_from_anchor.inverse();
     let size = f64::from(view.map_size());
-    // Where a map is smaller than its kernel, only its middle remains.
-    let reach = sampling.filter.reach_texels().min(size * 0.5);
-    let inner = [reach, reach, size - reach, size - reach].map(|texel| texel as f32);
+    // Where a map is smaller than its borders, only its middle remains.
+    let border = (sampling.border_texels() - ROUNDING_TEXELS).min(size * 0.5);
+    let inner = [border, border, size - border, size - border].map(|texel| texel as f32);
     let (depth_error, depth_error_relative) = view.depth_error_ndc();
     let (manual_constant, manual_slope) = sampling.bias.manual();
     ShadowViewUniform {

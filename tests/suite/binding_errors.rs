@@ -80,11 +80,13 @@ fn light_names_that_are_no_identifiers() {
 fn light_names_that_meet_others() {
     let gpu = gpu();
     let sun = tiny_sun(gpu, 1);
-    let sets: [&[&str]; 6] = [
+    let sets: [&[&str]; 8] = [
         &["point_sampler"],
         &["comparison_sampler"],
         &["sun", "views_sun"],
         &["sun", "map_sun"],
+        &["sun", "view_sun"],
+        &["view_sun", "sun"],
         &["views_sun", "sun"],
         &["map_sun", "views_map_sun", "map_views_sun"],
     ];

@@ -6,7 +6,7 @@
 //! these differ are *undecided*: the test says little of them, and bounds their share.
 
 use bytemuck::Zeroable;
-use glam::{DVec2, DVec3, DVec4, Vec3, Vec4};
+use glam::{DVec2, DVec3, DVec4, Mat4, Vec3, Vec4};
 use wgpu_shadows::reference::{self, DepthLayer, Receiver};
 use wgpu_shadows::{
     Aabb, Bias, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
@@ -144,17 +144,16 @@ pub(super) fn place(point: &Point) -> (DVec3, DVec3) {
     (wide(point.position), wide(point.normal))
 }
 
-/// Does the band around `receiver` straddle a border of what the map covers?
-pub(super) fn at_border(view: &ShadowViewUniform, receiver: &Receiver, band: &Band) -> bool {
+/// Is a place so close to a border of what the map covers that rounding decides on which side it is?
+pub(super) fn at_border(view: &ShadowViewUniform, position: DVec3, band: &Band) -> bool {
+    let relative = position - Vec3::from_array(view.anchor).as_dvec3();
+    let texel_from_anchor = Mat4::from_cols_array_2d(&view.texel_from_anchor).as_dmat4();
+    let place = texel_from_anchor * relative.extend(1.0);
+    let texel = place.truncate().truncate() / place.w;
     let inner: DVec4 = Vec4::from_array(view.inner).as_dvec4();
-    let low = (receiver.texel - DVec2::new(inner.x, inner.y)).abs();
-    let high = (receiver.texel - DVec2::new(inner.z, inner.w)).abs();
-    // The far plane is tested before the bias, which moves the depth by at most the slack that it adds.
-    let slack = f64::from(view.depth_error)
-        + f64::from(view.lateral_error) * receiver.gradient.abs().element_sum();
-    low.cmple(band.texel).any()
-        || high.cmple(band.texel).any()
-        || (-band.depth..=slack + band.depth).contains(&receiver.depth)
+    let low = (texel - DVec2::new(inner.x, inner.y)).abs();
+    let high = (texel - DVec2::new(inner.z, inner.w)).abs();
+    low.cmple(band.texel).any() || high.cmple(band.texel).any() || place.z.abs() <= band.depth
 }
 
 /// Least and greatest visibility over the rounding band.
@@ -219,7 +218,7 @@ fn compare(gpu: &Gpu, scene: &Scene, map_size: u32, filter: Filter, bias: Bias) 
             tally.undecided += 1;
             continue;
         };
-        if at_border(&lit.view, &receiver, &band) {
+        if at_border(&lit.view, position, &band) {
             tally.undecided += 1;
             continue;
         }

@@ -14,6 +14,7 @@ mod fit_images;
 mod frame_errors;
 mod golden;
 mod keeping;
+mod mesh_errors;
 mod out_of_range;
 mod receiver_parity;
 mod self_shadow;
