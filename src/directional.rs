@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 use crate::cast::{ShadowCaster, ViewDraws};
 use crate::check;
 use crate::fit::{
-    CasterBounds, DirectionalFit, FitInput, FitLimits, LightAxes, MAX_CASCADES, Region,
+    DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, MAX_CASCADES, Region,
 };
 use crate::light_maps::{LayerBase, LightMaps, LightMapsDescriptor, MapsFrame, light_maps_getters};
 use crate::receive::{Sampling, Selection};
@@ -95,7 +95,7 @@ pub struct DirectionalShadow {
     limits: FitLimits,
     fit: DirectionalFit,
     bounds: Vec<Aabb>,
-    casters: Vec<CasterBounds>,
+    scratch: FitScratch,
 }
 
 impl DirectionalShadow {
@@ -149,7 +149,7 @@ impl DirectionalShadow {
             },
             fit: DirectionalFit::default(),
             bounds: Vec::new(),
-            casters: Vec::new(),
+            scratch: FitScratch::default(),
         })
     }
 
@@ -188,7 +188,7 @@ impl DirectionalShadow {
             casters: &self.bounds,
             receivers: frame.receivers,
         };
-        let fit = self.fit.fit(&input, &self.limits, &mut self.casters);
+        let fit = self.fit.fit(&input, &self.limits, &mut self.scratch);
         let views = self.cull(&fit, &axes, frame.origin)?;
         let maps_frame = MapsFrame {
             views,
@@ -217,7 +217,7 @@ impl DirectionalShadow {
             let mut casters = self.maps.spare_list();
             casters.extend(
                 (0u32..)
-                    .zip(&self.casters)
+                    .zip(&self.scratch.casters)
                     .filter(|(_, caster)| caster.can_shadow && window.holds_part_of(&caster.light))
                     .map(|(index, _)| index),
             );

@@ -110,6 +110,11 @@ pub(crate) struct CameraFrustum {
 }
 
 impl CameraFrustum {
+    /// Unit vector along the view.
+    pub fn forward(&self) -> DVec3 {
+        self.forward
+    }
+
     /// Where the camera stands.
     pub fn eye_render(&self) -> Vec3 {
         self.eye.as_vec3()

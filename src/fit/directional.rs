@@ -7,6 +7,7 @@ use crate::fit::axes::{LightAxes, LightBox};
 use crate::fit::camera::CameraFrustum;
 use crate::fit::region::{HalfSpace, HalfSpaces};
 use crate::fit::split::CascadeSplit;
+use crate::fit::visible::{self, Seen, SeenBounds};
 use crate::fit::window::{DepthRange, MapWindow, OrthoWindow, WindowRequest};
 
 /// Most cascades that one light may have.
@@ -56,122 +57,71 @@ pub(crate) struct DirectionalFit {
     held: [Option<OrthoWindow>; MAX_CASCADES],
 }
 
-/// Visible receivers: their bounds in render space and their depths along the view.
-struct VisibleReceivers {
-    render_min: DVec3,
-    render_max: DVec3,
-    depth_near: f64,
-    depth_far: f64,
+/// Lists that keep their memory from frame to frame.
+#[derive(Debug, Default)]
+pub(crate) struct FitScratch {
+    /// One entry per caster, in order.
+    pub casters: Vec<CasterBounds>,
+    seen: Vec<Seen>,
 }
 
 impl DirectionalFit {
-    /// The windows for this frame. `casters` is filled with one entry per caster, in order.
-    pub fn fit(
-        &self,
-        input: &FitInput<'_>,
-        limits: &FitLimits,
-        casters: &mut Vec<CasterBounds>,
-    ) -> Self {
-        casters.clear();
-        let visible = visible_receivers(input);
-        casters.extend(input.casters.iter().map(|bounds| CasterBounds {
-            light: input.axes.light_box(bounds, input.origin),
-            can_shadow: !bounds.is_empty()
-                && can_shadow(bounds, &visible, input.axes.toward_light()),
-        }));
+    /// The windows for this frame; `scratch.casters` is filled.
+    pub fn fit(&self, input: &FitInput<'_>, limits: &FitLimits, scratch: &mut FitScratch) -> Self {
+        let visible = match &input.region {
+            Region::Bounds(bounds) => SeenBounds::of_box(bounds),
+            Region::Camera(camera) => {
+                let receivers = input.casters.iter().chain(input.receivers);
+                visible::find(camera, receivers, &mut scratch.seen)
+            }
+        };
+        scratch.casters.clear();
+        scratch
+            .casters
+            .extend(input.casters.iter().map(|bounds| CasterBounds {
+                light: input.axes.light_box(bounds, input.origin),
+                can_shadow: !bounds.is_empty()
+                    && can_shadow(bounds, &visible, input.axes.toward_light()),
+            }));
         let mut next = self.clone();
         for cascade in 0..limits.cascades {
-            let required = self.required_box(input, limits, &visible, cascade);
-            let window = required.and_then(|required| {
-                fit_window(
-                    input,
-                    limits,
-                    casters,
-                    required,
-                    self.held[cascade].as_ref(),
-                )
-            });
+            let required = required_box(input, limits, &visible, &scratch.seen, cascade);
+            let held = self.held[cascade].as_ref();
+            let window = required
+                .and_then(|required| fit_window(input, limits, &scratch.casters, required, held));
             next.held[cascade] = window.or(next.held[cascade]);
             next.windows[cascade] = window;
         }
         next
     }
-
-    /// Light-space box of the receivers that cascade `cascade` is for; none where there are none.
-    fn required_box(
-        &self,
-        input: &FitInput<'_>,
-        limits: &FitLimits,
-        visible: &VisibleReceivers,
-        cascade: usize,
-    ) -> Option<LightBox> {
-        let frustum = match &input.region {
-            Region::Bounds(bounds) => {
-                return (!bounds.is_empty())
-                    .then(|| input.axes.light_box(bounds, input.origin))
-                    .filter(|_| cascade == 0);
-            }
-            Region::Camera(frustum) => frustum,
-        };
-        if visible.depth_near > visible.depth_far {
-            return None;
-        }
-        let end = |index| {
-            limits.split.depth(
-                index,
-                limits.cascades,
-                visible.depth_near,
-                visible.depth_far,
-            )
-        };
-        let slice = if limits.cascades == 1 {
-            frustum.planes
-        } else {
-            frustum.slice(end(cascade), end(cascade + 1))
-        };
-        let mut required = LightBox::EMPTY;
-        for bounds in input.casters.iter().chain(input.receivers) {
-            slice.visit_vertices(bounds, |vertex| {
-                required.include(input.axes.light_from_world * (input.origin + vertex));
-            });
-        }
-        (!required.is_empty()).then_some(required)
-    }
 }
 
-/// What of the receivers can be seen. In a given box, all of the box counts as seen.
-fn visible_receivers(input: &FitInput<'_>) -> VisibleReceivers {
-    let mut visible = VisibleReceivers {
-        render_min: DVec3::INFINITY,
-        render_max: DVec3::NEG_INFINITY,
-        depth_near: f64::INFINITY,
-        depth_far: f64::NEG_INFINITY,
-    };
+/// Light-space box of the receivers that cascade `cascade` is for; none where there are none.
+fn required_box(
+    input: &FitInput<'_>,
+    limits: &FitLimits,
+    visible: &SeenBounds,
+    seen: &[Seen],
+    cascade: usize,
+) -> Option<LightBox> {
     match &input.region {
         Region::Bounds(bounds) => {
-            visible.render_min = bounds.min.as_dvec3();
-            visible.render_max = bounds.max.as_dvec3();
+            (cascade == 0 && !bounds.is_empty()).then(|| input.axes.light_box(bounds, input.origin))
         }
-        Region::Camera(frustum) => {
-            for bounds in input.casters.iter().chain(input.receivers) {
-                frustum.planes.visit_vertices(bounds, |vertex| {
-                    visible.render_min = visible.render_min.min(vertex);
-                    visible.render_max = visible.render_max.max(vertex);
-                    let depth = frustum.depth(vertex);
-                    visible.depth_near = visible.depth_near.min(depth);
-                    visible.depth_far = visible.depth_far.max(depth);
-                });
-            }
+        Region::Camera(camera) => {
+            let (near, far) = (visible.depth_near, visible.depth_far);
+            let end = |index| limits.split.depth(index, limits.cascades, near, far);
+            let between = (end(cascade), end(cascade + 1));
+            visible::light_box_between(camera, seen, between, &input.axes, input.origin)
         }
     }
-    visible
 }
 
 /// Can a shadow of `caster` fall on anything visible? A point is shadowed by a point of the caster further along the way to
 /// the light, so on each world axis the caster must reach beyond the receivers' near end in the light's direction. A flat
 /// floor under everything else fails this (it reaches just as far as the lowest receiver: itself), and neither widens the
 /// window nor is drawn.
-fn can_shadow(caster: &Aabb, receivers: &VisibleReceivers, toward_light: DVec3) -> bool {
+fn can_shadow(caster: &Aabb, receivers: &SeenBounds, toward_light: DVec3) -> bool {
     let (low, high) = (caster.min.as_dvec3(), caster.max.as_dvec3());
     (0..3).all(|axis| {
         let toward = toward_light[axis];

@@ -7,6 +7,7 @@
 //! ladder.rs       quantised extents with hysteresis
 //! window.rs       the rectangle of a map plane that a view covers, snapped to whole texels
 //! split.rs        where one cascade ends and the next begins
+//! visible.rs      what a camera sees of the receivers
 //! directional.rs  all of it put together for a sun
 //! local.rs        the same for the views of a spot or point light
 //! view.rs         ShadowView: the value that the upper floors render and sample with
@@ -20,6 +21,7 @@ mod local;
 mod region;
 mod split;
 mod view;
+mod visible;
 mod window;
 
 pub use axes::LightAxes;
@@ -27,7 +29,7 @@ pub(crate) use axes::LightBox;
 pub(crate) use camera::CameraFrustum;
 pub use camera::CameraView;
 pub(crate) use directional::{
-    CasterBounds, DirectionalFit, FitInput, FitLimits, MAX_CASCADES, Region,
+    DirectionalFit, FitInput, FitLimits, FitScratch, MAX_CASCADES, Region,
 };
 pub(crate) use local::{LocalFit, LocalInput, MAX_LOCAL_VIEWS};
 pub use split::CascadeSplit;

@@ -32,7 +32,8 @@ pub(crate) struct HalfSpaces {
 }
 
 /// How a box lies to a region.
-enum Relation {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Relation {
     Outside,
     Inside,
     Across,
@@ -92,7 +93,8 @@ impl HalfSpaces {
         &self.planes[..self.count]
     }
 
-    fn relation(&self, bounds: &Aabb) -> Relation {
+    /// How `bounds` (not empty) lies to the region; a box near an edge of it may count as across though it lies outside.
+    pub fn relation(&self, bounds: &Aabb) -> Relation {
         let center = (bounds.min.as_dvec3() + bounds.max.as_dvec3()) * 0.5;
         let half = (bounds.max.as_dvec3() - bounds.min.as_dvec3()) * 0.5;
         let mut relation = Relation::Inside;

@@ -1,0 +1,124 @@
+//! What a camera sees of the receivers: found once a frame, then divided among the cascades.
+
+use glam::DVec3;
+
+use crate::Aabb;
+use crate::fit::axes::{LightAxes, LightBox};
+use crate::fit::camera::CameraFrustum;
+use crate::fit::region::Relation;
+
+/// A receiver of which the camera sees something.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seen {
+    bounds: Aabb,
+    /// All of it lies in the camera's volume.
+    wholly: bool,
+    /// Depths along the view of the part that is seen.
+    depth_near: f64,
+    depth_far: f64,
+}
+
+/// Bounds of all that is seen, in render space and in depth along the view.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SeenBounds {
+    pub render_min: DVec3,
+    pub render_max: DVec3,
+    pub depth_near: f64,
+    pub depth_far: f64,
+}
+
+impl SeenBounds {
+    pub const NOTHING: Self = Self {
+        render_min: DVec3::INFINITY,
+        render_max: DVec3::NEG_INFINITY,
+        depth_near: f64::INFINITY,
+        depth_far: f64::NEG_INFINITY,
+    };
+
+    /// All of a box, at no depth in particular.
+    pub fn of_box(bounds: &Aabb) -> Self {
+        Self {
+            render_min: bounds.min.as_dvec3(),
+            render_max: bounds.max.as_dvec3(),
+            ..Self::NOTHING
+        }
+    }
+
+    fn include(&mut self, seen: &Seen, render_min: DVec3, render_max: DVec3) {
+        self.render_min = self.render_min.min(render_min);
+        self.render_max = self.render_max.max(render_max);
+        self.depth_near = self.depth_near.min(seen.depth_near);
+        self.depth_far = self.depth_far.max(seen.depth_far);
+    }
+}
+
+/// Fills `seen` with the receivers that `camera` sees something of; returns the bounds of what it sees.
+pub(crate) fn find<'a>(
+    camera: &CameraFrustum,
+    receivers: impl Iterator<Item = &'a Aabb>,
+    seen: &mut Vec<Seen>,
+) -> SeenBounds {
+    seen.clear();
+    let mut all = SeenBounds::NOTHING;
+    for bounds in receivers.filter(|bounds| !bounds.is_empty()) {
+        let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+        let mut part = Seen {
+            bounds: *bounds,
+            wholly: false,
+            depth_near: f64::INFINITY,
+            depth_far: f64::NEG_INFINITY,
+        };
+        match camera.planes.relation(bounds) {
+            Relation::Outside => continue,
+            Relation::Inside => {
+                let middle = camera.depth((min + max) * 0.5);
+                let reach = camera.forward().abs().dot((max - min) * 0.5);
+                part.wholly = true;
+                part.depth_near = middle - reach;
+                part.depth_far = middle + reach;
+                all.include(&part, min, max);
+            }
+            Relation::Across => {
+                let (mut part_min, mut part_max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+                camera.planes.visit_vertices(bounds, |vertex| {
+                    part_min = part_min.min(vertex);
+                    part_max = part_max.max(vertex);
+                    let depth = camera.depth(vertex);
+                    part.depth_near = part.depth_near.min(depth);
+                    part.depth_far = part.depth_far.max(depth);
+                });
+                if part.depth_near > part.depth_far {
+                    continue;
+                }
+                all.include(&part, part_min, part_max);
+            }
+        }
+        seen.push(part);
+    }
+    all
+}
+
+/// Light-space box of what is seen between two depths; none for nothing.
+pub(crate) fn light_box_between(
+    camera: &CameraFrustum,
+    seen: &[Seen],
+    (depth_near, depth_far): (f64, f64),
+    axes: &LightAxes,
+    origin: DVec3,
+) -> Option<LightBox> {
+    let slice = camera.slice(depth_near, depth_far);
+    let mut covered = LightBox::EMPTY;
+    let overlapping = seen
+        .iter()
+        .filter(|part| part.depth_near <= depth_far && part.depth_far >= depth_near);
+    for part in overlapping {
+        if part.wholly && part.depth_near >= depth_near && part.depth_far <= depth_far {
+            covered.union(&axes.light_box(&part.bounds, origin));
+        } else {
+            slice.visit_vertices(&part.bounds, |vertex| {
+                covered.include(axes.light_from_world * (origin + vertex));
+            });
+        }
+    }
+    (!covered.is_empty()).then_some(covered)
+}
