@@ -42,16 +42,6 @@ fn fragment(surface: Surface) -> @location(0) vec4<f32> {
     return vec4<f32>(in_the_haze(lit_town(surface, normal), surface.position), 1.0);
 }
 
-// The first cascade that holds the whole kernel around a place, as `shadow_sun` chooses it; 4 where none does.
-fn serving_cascade(position: vec3<f32>, normal: vec3<f32>) -> u32 {
-    for (var i = 0u; i < 4u; i++) {
-        if shadow_receiver_plane(shadow_views_sun[i], position, normal).inside {
-            return i;
-        }
-    }
-    return 4u;
-}
-
 @fragment
 fn fragment_cascades(surface: Surface) -> @location(0) vec4<f32> {
     var tints = array<vec3<f32>, 5>(
@@ -63,6 +53,6 @@ fn fragment_cascades(surface: Surface) -> @location(0) vec4<f32> {
     );
     let normal = shadow_geometric_normal(surface.position);
     let color = lit_town(surface, normal);
-    let tint = tints[serving_cascade(surface.position, normal)];
+    let tint = tints[shadow_view_sun(surface.position)];
     return vec4<f32>(tint * (0.12 + 0.88 * dot(color, vec3<f32>(0.3, 0.5, 0.2))), 1.0);
 }

@@ -6,9 +6,8 @@ use crate::fit::ShadowView;
 use crate::receive::Filter;
 
 /// Residual offset along the normal that [`Bias::Auto`] adds to the plane, in texels times |nx| + |ny| of the normal in light
-/// space: for facets finer than a texel and for open sheets, where a texel holds more than the receiver's own plane.
-///
-/// Measured over 32 scenes against ray-traced truth in a float64 model: rmse 0.0289 without, 0.0278 with 0.1, 0.0288 with 0.2.
+/// space: for facets finer than a texel and for open sheets, where a texel holds more than the receiver's own plane. With none,
+/// fine meshes show specks of acne; from twice as much on, thin things lose more of their contact than that is worth.
 const RESIDUAL_OFFSET_TEXELS: f64 = 0.1;
 
 /// Vertices snap to 1/256 of a texel, once for the caster's edge and once for its neighbour's.

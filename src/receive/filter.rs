@@ -79,7 +79,8 @@ pub enum Filter {
 }
 
 impl Default for Filter {
-    /// `TentNarrow` sharpened three times: the least error against ray-traced hard shadows of all that were tried.
+    /// `TentNarrow` sharpened three times: of the filters here the least error against ray-traced hard shadows for its cost
+    /// (`cargo bench --bench speed_vs_error`).
     fn default() -> Self {
         Self::TentNarrow { sharpness: 3.0 }
     }
