@@ -171,6 +171,7 @@ impl LocalLights {
             receiver_tangent: light.tangent,
             caster_tangent: light.tangent
                 * border(maps.map_size(), maps.sampling().border_texels()),
+            looks_around: maps.sampling().filter.directions().is_some(),
             camera,
             casters: &self.bounds,
             receivers: frame.receivers,

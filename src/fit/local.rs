@@ -31,6 +31,8 @@ pub(crate) struct LocalInput<'a> {
     pub receiver_tangent: f64,
     /// The same for casters: wider by what a kernel at the border reaches.
     pub caster_tangent: f64,
+    /// Lookups reach beyond the place of their receiver: views are not limited to where receivers are seen.
+    pub looks_around: bool,
     /// Limits receivers to what a camera sees.
     pub camera: Option<&'a CameraFrustum>,
     /// Bounds of casters, which receive too.
@@ -93,16 +95,18 @@ impl LocalFit {
                     .iter()
                     .for_each(|plane| seen.push(*plane));
             }
-            let receivers = input.casters.iter().chain(input.receivers);
-            let Some(received) = view.extent(&seen, receivers.map(|r| intersection(r, &within)))
-            else {
-                continue;
-            };
             let casters = input.casters.iter().filter(|caster| casts(caster));
             let Some(cast) = view.extent(&field, casters.map(|c| intersection(c, &within))) else {
                 continue;
             };
-            let (min, max) = (received.min.max(cast.min), received.max.min(cast.max));
+            let (mut min, mut max) = (cast.min, cast.max);
+            if !input.looks_around {
+                let receivers = input.casters.iter().chain(input.receivers);
+                let received = view.extent(&seen, receivers.map(|r| intersection(r, &within)));
+                let Some(received) = received else { continue };
+                min = min.max(received.min);
+                max = max.min(received.max);
+            }
             if min.cmpgt(max).any() {
                 continue;
             }

@@ -150,7 +150,7 @@ fn mean_lookup(
     if length(from_light) > light.range {{
         return 1.0;
     }}
-    let radius = shadow_direction_radius(light, position);
+    let radius = {offsets}_radius(light, position);
     var lit = 0.0;
     for (var i = 0u; i < {samples}u; i++) {{
         let offset = {offsets}(i) * radius;

@@ -1,0 +1,275 @@
+//! Cost against error, beside the shadow mapping of the textbook in the same run.
+//!
+//! `cargo bench --bench speed_vs_error` measures every filter, bias, map size and coverage over all scenes;
+//! `cargo bench --bench speed_vs_error -- --quick` a subset. Tables go to standard output, every number as CSV and one chart and one
+//! picture per scene to `target/speed_vs_error`. Errors are those against rays cast in double precision through the pixels of a camera.
+//! Times are multiples of the textbook's, measured right before: on a software rasteriser nothing else means anything.
+//! The run fails where the library's default is not on the Pareto front of work per frame against rmse.
+//!
+//! ```text
+//! support/scenes.rs         what is measured on
+//! support/truth.rs          the ray caster, checked by closed_form.rs
+//! support/pixels.rs         what a camera sees, with the truth; edge.rs: how far it is from a shadow's edge
+//! support/technique.rs      what is compared: library.rs, textbook/
+//! support/configuration.rs  with which settings
+//! support/measure.rs        runs them; probe.rs: asks and times; error.rs: compares; floor.rs: what no filter can beat
+//! support/overall.rs        means over scenes, and the judgement; pareto.rs
+//! support/report.rs         tables; chart.rs: charts; picture.rs: the truth beside default and textbook
+//! ```
+
+use std::error::Error;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use clap::Parser;
+
+use support::chart::{self, Point, Words};
+use support::configuration::{self, Configuration, Extent};
+use support::floor::Floors;
+use support::gpu::Gpu;
+use support::measure::{self, Sample, Settings};
+use support::overall::{self, Overall};
+use support::pixels::Effort;
+use support::probe::Prober;
+use support::{closed_form, report, scenes};
+
+mod support {
+    //! What the bench is made of.
+
+    pub mod chart;
+    pub mod closed_form;
+    pub mod configuration;
+    pub mod edge;
+    pub mod error;
+    pub mod floor;
+    pub mod gpu;
+    pub mod library;
+    pub mod measure;
+    pub mod mesh;
+    pub mod overall;
+    pub mod parallel;
+    pub mod pareto;
+    pub mod picture;
+    pub mod pixels;
+    pub mod probe;
+    pub mod random;
+    pub mod report;
+    pub mod scene;
+    pub mod scenes;
+    pub mod statistics;
+    pub mod technique;
+    pub mod textbook;
+    pub mod truth;
+}
+
+/// Cost of shadows against their error, beside the textbook's.
+#[derive(Parser)]
+struct Arguments {
+    /// Fewer configurations, pixels and repetitions: minutes instead of an hour or two on a software rasteriser.
+    #[arg(long)]
+    quick: bool,
+    /// Only these scenes (all others are left out of the means, too).
+    #[arg(long = "scene", value_name = "NAME")]
+    scenes: Vec<String>,
+    /// Texels per side of a sun's map; spots and faces of point lights have half of that.
+    #[arg(long, value_delimiter = ',', default_values_t = [512, 1024, 2048, 4096])]
+    map_sizes: Vec<u32>,
+    /// Timed repetitions of each configuration, each next to one of the textbook's. Default 30; 2 with --quick.
+    #[arg(long)]
+    repeats: Option<u32>,
+    /// Width of the pictures in pixels, 16:9. Default 480; 256 with --quick.
+    #[arg(long)]
+    width: Option<u32>,
+    /// Print every configuration of every scene, not only the front, the default and the textbook.
+    #[arg(long)]
+    all_rows: bool,
+    /// Folder for tables and charts.
+    #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/target/speed_vs_error"))]
+    output: PathBuf,
+    /// Passed by `cargo bench`.
+    #[arg(long, hide = true)]
+    bench: bool,
+}
+
+fn main() -> ExitCode {
+    match run(&Arguments::parse()) {
+        Ok(Ok(praise)) => {
+            println!("\nPASS: {praise}");
+            ExitCode::SUCCESS
+        }
+        Ok(Err(blame)) => {
+            println!("\nFAIL: {blame}");
+            ExitCode::FAILURE
+        }
+        Err(error) => {
+            eprintln!("speed_vs_error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Measures, prints and writes; the inner result is the judgement of the default.
+fn run(arguments: &Arguments) -> Result<Result<String, String>, Box<dyn Error>> {
+    let start = Instant::now();
+    let gpu = Gpu::new()?;
+    println!("{}", gpu.describe());
+    if gpu.is_software() {
+        println!(
+            "A software rasteriser: times are ratios of work done on the CPU, not of a GPU's."
+        );
+    }
+    closed_form::check_ray_caster();
+    let extent = if arguments.quick {
+        Extent::Quick
+    } else {
+        Extent::Full
+    };
+    let configurations = configuration::all(extent, &arguments.map_sizes);
+    let settings = Settings {
+        floors: Floors::of(configurations.iter().map(Configuration::floor_filter)),
+        configurations: &configurations,
+        effort: effort(arguments),
+        repeats: arguments
+            .repeats
+            .unwrap_or(if arguments.quick { 2 } else { 30 })
+            .max(1),
+        folder: &arguments.output,
+    };
+    std::fs::create_dir_all(&arguments.output)?;
+    let mut prober = Prober::new(&gpu);
+    let mut samples: Vec<Sample> = Vec::new();
+    for scene in chosen_scenes(&arguments.scenes)? {
+        let own = measure::scene(&gpu, &mut prober, &scene, &settings)?;
+        report::print_scene(&own, arguments.all_rows);
+        chart_of_scene(arguments, &own)?;
+        samples.extend(own);
+    }
+    let entries = overall::of(&samples);
+    report::print_overall(&entries);
+    charts_of_all(arguments, &entries)?;
+    report::write_samples(&arguments.output.join("samples.csv"), &samples)?;
+    report::write_overall(&arguments.output.join("overall.csv"), &entries)?;
+    println!(
+        "\n{} samples in {:.0} s; tables and charts in {}",
+        samples.len(),
+        start.elapsed().as_secs_f64(),
+        arguments.output.display()
+    );
+    for sentence in overall::other_views(&entries).unwrap_or_default() {
+        println!("{sentence}");
+    }
+    let broken = samples.iter().filter(|sample| sample.errors.non_finite > 0);
+    let judgement = match broken.count() {
+        0 => overall::judge_default(&entries),
+        count => Err(format!("{count} samples hold answers that are no number")),
+    };
+    Ok(judgement)
+}
+
+fn effort(arguments: &Arguments) -> Effort {
+    let width = arguments
+        .width
+        .unwrap_or(if arguments.quick { 256 } else { 480 })
+        .max(16);
+    Effort {
+        picture: [width, width * 9 / 16],
+        disc_side: if arguments.quick { 16 } else { 32 },
+        ring_rays: if arguments.quick { 12 } else { 24 },
+    }
+}
+
+fn chosen_scenes(names: &[String]) -> Result<Vec<support::scene::Scene>, String> {
+    let mut scenes = scenes::all();
+    if let Some(unknown) = names
+        .iter()
+        .find(|name| scenes.iter().all(|scene| scene.name != name.as_str()))
+    {
+        let known: Vec<_> = scenes.iter().map(|scene| scene.name).collect();
+        return Err(format!(
+            "no scene is called {unknown:?}; there are {}",
+            known.join(", ")
+        ));
+    }
+    scenes.retain(|scene| names.is_empty() || names.iter().any(|name| name == scene.name));
+    Ok(scenes)
+}
+
+const COST_WORDS: &str = "texels cleared + texture instructions of 1920×1080 pixels";
+
+fn chart_of_scene(arguments: &Arguments, samples: &[Sample]) -> Result<(), Box<dyn Error>> {
+    let Some(first) = samples.first() else {
+        return Ok(());
+    };
+    let front = report::front(samples);
+    let points: Vec<_> = samples
+        .iter()
+        .zip(front)
+        .map(|(sample, is_on_front)| {
+            point(
+                &sample.configuration,
+                [sample.cost.frame_work(), sample.errors.rmse],
+                is_on_front,
+            )
+        })
+        .collect();
+    let words = Words {
+        title: &format!("Scene \"{}\": error against cost", first.scene),
+        cost: COST_WORDS,
+        error: "root of mean squared error of the visibility",
+    };
+    let path = arguments.output.join(format!("{}.svg", first.scene));
+    chart::draw(&path, &words, &points)
+}
+
+fn charts_of_all(arguments: &Arguments, entries: &[Overall]) -> Result<(), Box<dyn Error>> {
+    let error = "root of mean squared error of the visibility, mean over scenes";
+    let points: Vec<_> = entries
+        .iter()
+        .map(|entry| {
+            point(
+                &entry.configuration,
+                [entry.cost, entry.rmse],
+                entry.is_on_front,
+            )
+        })
+        .collect();
+    let words = Words {
+        title: "All scenes with hard shadows: error against cost",
+        cost: COST_WORDS,
+        error,
+    };
+    chart::draw(&arguments.output.join("overall.svg"), &words, &points)?;
+    let costs: Vec<_> = entries
+        .iter()
+        .map(|entry| [entry.time_ratio, entry.rmse])
+        .collect();
+    let front = support::pareto::front(&costs);
+    let points: Vec<_> = entries
+        .iter()
+        .zip(costs)
+        .zip(front)
+        .map(|((entry, place), is_on_front)| point(&entry.configuration, place, is_on_front))
+        .collect();
+    let words = Words {
+        title: "All scenes with hard shadows: error against time",
+        cost: "time as a multiple of the textbook's with 1024 texels a side",
+        error,
+    };
+    chart::draw(&arguments.output.join("overall_time.svg"), &words, &points)
+}
+
+fn point(configuration: &Configuration, [cost, error]: [f64; 2], is_on_front: bool) -> Point {
+    let is_default = *configuration == Configuration::shipped_default();
+    let named = is_on_front || is_default || *configuration == Configuration::BASELINE;
+    Point {
+        cost,
+        error,
+        series: configuration.series(),
+        family: configuration.family(),
+        mark: configuration.mark(),
+        label: named.then(|| configuration.to_string()),
+        is_on_front,
+        is_default,
+    }
+}

@@ -1,0 +1,232 @@
+//! What is compared with what.
+
+use std::fmt;
+
+use wgpu_shadows::{Bias, Filter};
+
+use super::chart::Mark;
+use super::scene::{Light, SUN_DIAMETER_RADIANS};
+
+/// A technique with its settings, the same for every scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Configuration {
+    pub method: Method,
+    /// Texels per side of a sun's map. Spots and the faces of point lights have half of that, as the library's defaults do.
+    pub map_size: u32,
+    /// Maps cover what the camera sees; else the whole scene.
+    pub fits_camera: bool,
+}
+
+/// How shadows are made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Method {
+    Library {
+        filter: Filter,
+        bias: Bias,
+    },
+    /// The tutorial's last word on suns and spots; its grid of 64 for point lights.
+    Textbook,
+    /// The tutorial's 20 directions, for point lights.
+    TextbookStar,
+}
+
+/// The manual bias that is tried beside the derived ones: the tutorial's constants in metres, over a depth of four.
+const MANUAL: Bias = Bias::Manual {
+    constant: 0.02,
+    slope: 0.2,
+};
+
+/// How many configurations to try.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// Every filter with every bias.
+    Full,
+    /// Every filter with its own bias, two filters with every bias.
+    Quick,
+}
+
+impl Configuration {
+    /// What the library does unless told otherwise.
+    pub fn shipped_default() -> Self {
+        Self {
+            method: Method::Library {
+                filter: Filter::default(),
+                bias: Bias::Auto,
+            },
+            map_size: 2048,
+            fits_camera: true,
+        }
+    }
+
+    /// The tutorial, with its map of 1024 texels a side: what times are divided by.
+    pub const BASELINE: Self = Self {
+        method: Method::Textbook,
+        map_size: 1024,
+        fits_camera: false,
+    };
+
+    pub fn is_textbook(&self) -> bool {
+        !matches!(self.method, Method::Library { .. })
+    }
+
+    /// Texels per side for this kind of light.
+    pub fn map_size_for(&self, light: &Light) -> u32 {
+        match light {
+            Light::Sun { .. } => self.map_size,
+            Light::Spot { .. } | Light::Point { .. } => self.map_size / 2,
+        }
+    }
+
+    /// Filters in direction space are for point lights only, and those with a light's size for lights that have one.
+    pub fn suits(&self, light: &Light) -> bool {
+        let is_point = matches!(light, Light::Point { .. });
+        match self.method {
+            Method::Textbook => true,
+            Method::TextbookStar => is_point,
+            Method::Library { filter, .. } => {
+                (is_point || filter.radius_world() == 0.0)
+                    && (light.is_soft() || filter.light_size() == 0.0)
+            }
+        }
+    }
+
+    /// The settings without the map's size.
+    pub fn series(&self) -> String {
+        let coverage = if self.fits_camera { "camera" } else { "scene" };
+        match self.method {
+            Method::Textbook => "textbook".to_owned(),
+            Method::TextbookStar => "textbook, 20 directions".to_owned(),
+            Method::Library { filter, bias } => {
+                let filter = filter_name(filter);
+                match bias_name(bias) {
+                    "auto" => format!("{filter}, {coverage}"),
+                    bias => format!("{filter}, {bias}, {coverage}"),
+                }
+            }
+        }
+    }
+
+    /// The filter whose floor an edge's aliasing is held against.
+    pub fn floor_filter(&self) -> Filter {
+        match self.method {
+            Method::Library { filter, .. } => filter,
+            Method::Textbook => Filter::Box,
+            Method::TextbookStar => Filter::Nearest,
+        }
+    }
+
+    /// What of the settings a chart shows by colour.
+    pub fn family(&self) -> String {
+        match self.method {
+            Method::Textbook | Method::TextbookStar => "textbook".to_owned(),
+            Method::Library { filter, .. } => filter_name(filter),
+        }
+    }
+
+    /// What of the settings a chart shows by the shape of the mark.
+    pub fn mark(&self) -> Mark {
+        match self.method {
+            Method::Textbook | Method::TextbookStar => Mark::Cross,
+            Method::Library {
+                bias: Bias::Auto, ..
+            } if self.fits_camera => Mark::Circle,
+            Method::Library {
+                bias: Bias::Auto, ..
+            } => Mark::Square,
+            Method::Library { .. } => Mark::Triangle,
+        }
+    }
+}
+
+impl fmt::Display for Configuration {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{}, {}", self.series(), self.map_size)
+    }
+}
+
+/// Everything to try, the textbook last.
+pub fn all(extent: Extent, map_sizes: &[u32]) -> Vec<Configuration> {
+    let mut methods = Vec::new();
+    for filter in filters(extent) {
+        for bias in [Bias::Auto, Bias::NormalOffset, MANUAL] {
+            let exemplary = matches!(filter, Filter::Hardware) || filter == Filter::default();
+            // The comparison sampler's own bias is the normal offset.
+            let again = filter == Filter::Hardware && bias == Bias::NormalOffset;
+            if bias == Bias::Auto || !again && (extent == Extent::Full || exemplary) {
+                methods.push(Method::Library { filter, bias });
+            }
+        }
+    }
+    let mut all = Vec::new();
+    for &map_size in map_sizes {
+        for fits_camera in [true, false] {
+            all.extend(methods.iter().map(|&method| Configuration {
+                method,
+                map_size,
+                fits_camera,
+            }));
+        }
+        for method in [Method::Textbook, Method::TextbookStar] {
+            all.push(Configuration {
+                method,
+                map_size,
+                fits_camera: false,
+            });
+        }
+    }
+    all
+}
+
+fn filters(extent: Extent) -> Vec<Filter> {
+    let mut filters = Filter::ALL.to_vec();
+    filters.extend([
+        Filter::default(),
+        Filter::TentMedium { sharpness: 4.0 },
+        Filter::TentWide { sharpness: 5.0 },
+        Filter::Penumbra {
+            light_size: SUN_DIAMETER_RADIANS as f32,
+        },
+        Filter::DirectionGrid { radius: 0.1 },
+        Filter::DirectionStar { radius: 0.04 },
+    ]);
+    if extent == Extent::Full {
+        filters.extend([
+            Filter::Bilinear { sharpness: 2.0 },
+            Filter::TentNarrow { sharpness: 2.0 },
+            Filter::TentMedium { sharpness: 2.0 },
+            Filter::TentWide { sharpness: 3.0 },
+        ]);
+    }
+    filters
+}
+
+/// Name of a filter as in tables: its kind, and its sharpness where that is not 1.
+pub fn filter_name(filter: Filter) -> String {
+    let kind = match filter {
+        Filter::Nearest => "nearest",
+        Filter::Hardware => "hardware 2x2",
+        Filter::Box => "box 3x3",
+        Filter::Bilinear { .. } => "bilinear 2x2",
+        Filter::TentNarrow { .. } => "tent 3x3",
+        Filter::TentMedium { .. } => "tent 5x5",
+        Filter::TentWide { .. } => "tent 7x7",
+        Filter::Penumbra { .. } => "penumbra",
+        Filter::DirectionGrid { .. } => "direction grid",
+        Filter::DirectionStar { .. } => "direction star",
+        _ => "other",
+    };
+    if filter.sharpness() > 1.0 && filter.light_size() == 0.0 {
+        format!("{kind} sharp {}", filter.sharpness())
+    } else {
+        kind.to_owned()
+    }
+}
+
+pub fn bias_name(bias: Bias) -> &'static str {
+    match bias {
+        Bias::Auto => "auto",
+        Bias::NormalOffset => "normal offset",
+        Bias::Manual { .. } => "manual",
+        _ => "other",
+    }
+}

@@ -1,0 +1,132 @@
+//! Many boxes as casters, all in one pair of buffers.
+
+use glam::Vec3;
+use wgpu_shadows::{
+    Aabb, CasterPipeline, CasterPipelineDescriptor, CasterVertex, ModelTransform,
+    PositionAttribute, Revision, ShadowCaster, ShadowView,
+};
+
+use super::gpu::Gpu;
+use super::mesh::Mesh;
+use super::random::Random;
+
+/// Boxes on a square of ground, one caster each.
+pub struct Crowd {
+    pub boxes: Vec<BoxCaster>,
+    /// The same boxes as one mesh, for drawing without the library.
+    pub mesh: Mesh,
+}
+
+/// A caster that draws its part of shared buffers.
+pub struct BoxCaster {
+    pipeline: CasterPipeline,
+    vertices: wgpu::Buffer,
+    indices: wgpu::Buffer,
+    first_vertex: i32,
+    index_count: u32,
+    bounds: Aabb,
+    id: u64,
+}
+
+impl Crowd {
+    /// `count` boxes, four metres of ground each.
+    pub fn new(gpu: &Gpu, count: u32) -> Self {
+        let half = half_side(count);
+        let mut random = Random::new(31);
+        let meshes: Vec<Mesh> = (0..count)
+            .map(|_| {
+                let foot = Vec3::new(
+                    random.between(-half, half),
+                    0.0,
+                    random.between(-half, half),
+                );
+                let size = Vec3::new(
+                    random.between(0.3, 1.0),
+                    random.between(0.3, 3.0),
+                    random.between(0.3, 1.0),
+                );
+                Mesh::standing_box(foot, size, random.between(0.0, 3.0))
+            })
+            .collect();
+        let positions: Vec<Vec3> = meshes
+            .iter()
+            .flat_map(|mesh| &mesh.positions)
+            .copied()
+            .collect();
+        let pipeline = CasterPipeline::new(
+            &gpu.device,
+            &CasterPipelineDescriptor {
+                vertex: CasterVertex::BuiltIn {
+                    position: PositionAttribute::float32x3(12),
+                    model: ModelTransform::Identity,
+                },
+                ..Default::default()
+            },
+        )
+        .expect("a valid pipeline");
+        let vertices = gpu.buffer(&positions, wgpu::BufferUsages::VERTEX);
+        let indices = gpu.buffer(&meshes[0].indices, wgpu::BufferUsages::INDEX);
+        let mut first_vertex = 0;
+        let mut boxes = Vec::new();
+        for (id, mesh) in (0..).zip(&meshes) {
+            boxes.push(BoxCaster {
+                pipeline: pipeline.clone(),
+                vertices: vertices.clone(),
+                indices: indices.clone(),
+                first_vertex,
+                index_count: mesh.indices.len() as u32,
+                bounds: mesh.bounds(),
+                id,
+            });
+            first_vertex += mesh.positions.len() as i32;
+        }
+        let joined = (0u32..).zip(&meshes).flat_map(|(index, mesh)| {
+            let first = index * mesh.positions.len() as u32;
+            mesh.indices.iter().map(move |vertex| first + vertex)
+        });
+        Self {
+            boxes,
+            mesh: Mesh {
+                indices: joined.collect(),
+                positions,
+            },
+        }
+    }
+
+    pub fn list(&self) -> Vec<&dyn ShadowCaster> {
+        self.boxes
+            .iter()
+            .map(|caster| caster as &dyn ShadowCaster)
+            .collect()
+    }
+
+    /// Bounds of all boxes.
+    pub fn bounds(&self) -> Aabb {
+        self.mesh.bounds()
+    }
+}
+
+/// Half the side of the ground under `count` boxes.
+pub fn half_side(count: u32) -> f32 {
+    (count as f32).sqrt()
+}
+
+impl ShadowCaster for BoxCaster {
+    fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    fn pipeline(&self) -> &CasterPipeline {
+        &self.pipeline
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, _: &ShadowView) {
+        pass.set_vertex_buffer(0, self.vertices.slice(..));
+        pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..self.index_count, self.first_vertex, 0..1);
+    }
+
+    fn revision(&self) -> Revision {
+        Revision::new(self.id, 0)
+    }
+}

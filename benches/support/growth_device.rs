@@ -1,0 +1,184 @@
+//! Device time of maps and lookups: against cascades, map size and taps, and beside the bare minimum.
+
+use glam::{DMat4, DVec3, DVec4, Vec3};
+use wgpu_shadows::{Bias, CameraView, Coverage, Filter};
+
+use super::configuration::filter_name;
+use super::crowd::{self, Crowd};
+use super::gpu::Gpu;
+use super::growth::Growth;
+use super::library::{LibraryOptions, LibraryTechnique, SceneCasters};
+use super::mesh::Mesh;
+use super::probe::Prober;
+use super::scene::{Camera, Light, Scene};
+use super::stage::{SUN, Stage, frame, record_anew};
+use super::statistics::Spread;
+use super::textbook::flat::DepthDrawer;
+use super::textbook::meshes::{ViewUniform, WorldMeshes};
+
+/// A frame against the number of cascades, for a camera that sees to the end of the ground.
+pub fn cascades(stage: &Stage<'_>) {
+    let crowd = Crowd::new(stage.gpu, 2_000);
+    let list = crowd.list();
+    let camera = to_the_horizon(crowd::half_side(2_000));
+    let mut table = Growth::new(
+        "sun, 1024 texels a side, 2000 casters: a frame against cascades (device time as a ratio to one cascade)",
+        &["cascades", "CPU µs", "allocs", "draws", "device ratio"],
+    );
+    let frame = frame(&list, Coverage::Camera(camera));
+    let mut single = stage.sun(1024, 1, Filter::default());
+    for count in 1..=8 {
+        let mut shadow = stage.sun(1024, count, Filter::default());
+        let effort = stage.record_effort(&mut shadow, &frame, true);
+        let ratio = stage.ratio(
+            |encoder| record_anew(stage.gpu, &mut shadow, encoder, &frame),
+            |encoder| record_anew(stage.gpu, &mut single, encoder, &frame),
+        );
+        table.add(
+            f64::from(count),
+            [
+                effort.microseconds,
+                effort.allocations,
+                f64::from(shadow.report().draws()),
+                ratio.median,
+            ],
+        );
+    }
+    table.print();
+}
+
+/// The depth pass against the size of the map.
+pub fn map_sizes(stage: &Stage<'_>, largest: u32) {
+    let crowd = Crowd::new(stage.gpu, 500);
+    let list = crowd.list();
+    let frame = frame(&list, Coverage::Bounds(crowd.bounds()));
+    let mut table = Growth::new(
+        "sun, 500 casters: the depth pass against the map's side (device time as a ratio to 512)",
+        &["texels a side", "device ratio", "bytes"],
+    );
+    let mut smallest = stage.sun(512, 1, Filter::default());
+    let sizes = (0..).map(|doublings| 512u32 << doublings);
+    let limit = stage
+        .gpu
+        .device
+        .limits()
+        .max_texture_dimension_2d
+        .min(largest);
+    for size in sizes.take_while(|&size| size <= limit) {
+        let mut shadow = stage.sun(size, 1, Filter::default());
+        let ratio = stage.ratio(
+            |encoder| record_anew(stage.gpu, &mut shadow, encoder, &frame),
+            |encoder| record_anew(stage.gpu, &mut smallest, encoder, &frame),
+        );
+        table.add(
+            f64::from(size),
+            [ratio.median, shadow.report().bytes_held as f64],
+        );
+    }
+    table.print();
+}
+
+/// Lookups against texture instructions.
+pub fn taps(stage: &Stage<'_>) {
+    let scene = crowd_scene(stage.gpu);
+    let casters = SceneCasters::new(stage.gpu, &scene);
+    let mut prober = Prober::new(stage.gpu);
+    let half = crowd::half_side(500);
+    let places: Vec<_> = (0..512 * 512)
+        .map(|index| {
+            let place = |index: i32| f64::from(half) * (f64::from(index) / 256.0 - 1.0);
+            (
+                DVec3::new(place(index % 512), 0.0, place(index / 512)),
+                DVec3::Y,
+            )
+        })
+        .collect();
+    let questions = prober.questions(&places, DVec3::ZERO);
+    let technique = |filter| {
+        let options = LibraryOptions {
+            filter,
+            bias: Bias::Auto,
+            map_size: 2048,
+            fits_camera: false,
+        };
+        LibraryTechnique::new(stage.gpu, &scene, &casters, options).expect("a valid light")
+    };
+    let mut table = Growth::new(
+        "512x512 lookups in a map of 2048 texels a side: time as a ratio to the sampler's own 2x2 comparison",
+        &["instructions", "lookup ratio"],
+    );
+    let mut hardware = technique(Filter::Hardware);
+    prober.run(&mut hardware, &questions);
+    println!();
+    for filter in Filter::ALL {
+        let mut own = technique(filter);
+        prober.run(&mut own, &questions);
+        let ratio = Spread::of((0..stage.repeats).map(|_| {
+            let before = prober.run(&mut hardware, &questions).lookups;
+            prober.run(&mut own, &questions).lookups / before
+        }));
+        println!("{:>18} {:.2}", filter_name(filter), ratio.median);
+        if filter.compares_each_texel() {
+            table.add(f64::from(filter.texture_instructions()), [ratio.median]);
+        }
+    }
+    table.print();
+}
+
+/// The library's depth pass beside the same triangles in one draw, without the library.
+pub fn bare_minimum(stage: &Stage<'_>) {
+    println!(
+        "\nsun, 2048 texels a side: the depth pass beside the same triangles in one draw without the library"
+    );
+    for count in [100, 1_000, 10_000] {
+        let crowd = Crowd::new(stage.gpu, count);
+        let list = crowd.list();
+        let mut shadow = stage.sun(2048, 1, Filter::default());
+        let frame = frame(&list, Coverage::Bounds(crowd.bounds()));
+        stage.gpu.submit({
+            let mut encoder = stage.gpu.encoder();
+            record_anew(stage.gpu, &mut shadow, &mut encoder, &frame);
+            encoder
+        });
+        let view = shadow.views().next().expect("boxes cast");
+        // The bare pass clears to 1 and keeps the least depth: the same picture with its depth turned around.
+        let turned = DMat4::from_cols(
+            DVec4::X,
+            DVec4::Y,
+            DVec4::NEG_Z,
+            DVec4::new(0.0, 0.0, 1.0, 1.0),
+        );
+        let clip_from_world = turned * view.clip_from_render().as_dmat4();
+        let uniform = ViewUniform::new(clip_from_world, glam::Vec4::ZERO, glam::Vec4::ZERO);
+        let meshes =
+            WorldMeshes::of_meshes(stage.gpu, std::slice::from_ref(&crowd.mesh), DVec3::ZERO);
+        let drawer = DepthDrawer::new(stage.gpu, &uniform, 2048);
+        let ratio = stage.ratio(
+            |encoder| record_anew(stage.gpu, &mut shadow, encoder, &frame),
+            |encoder| drawer.draw(encoder, &meshes),
+        );
+        println!(
+            "{count:>18} casters: {:.3} times the bare pass on the device (middle half {:.3} to {:.3})",
+            ratio.median, ratio.lower_quartile, ratio.upper_quartile
+        );
+    }
+}
+
+/// A camera at the edge of a square of ground, that sees to its far end.
+fn to_the_horizon(half: f32) -> CameraView {
+    let camera = Camera::new(Vec3::new(0.0, 3.0, half), Vec3::new(0.0, 0.0, -half));
+    camera.view(16.0 / 9.0)
+}
+
+/// Boxes on ground, as a scene.
+fn crowd_scene(gpu: &Gpu) -> Scene {
+    let half = crowd::half_side(500);
+    Scene {
+        name: "crowd",
+        meshes: vec![Mesh::ground(0.0, half).joined(Crowd::new(gpu, 500).mesh)],
+        light: Light::sun(SUN.direction),
+        camera: Camera::new(Vec3::splat(half), Vec3::ZERO),
+        origin: DVec3::ZERO,
+        cascades: 1,
+    }
+}

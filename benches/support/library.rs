@@ -1,0 +1,299 @@
+//! The library as a technique.
+
+use wgpu_shadows::{
+    Bias, CascadeSplit, CasterPipeline, CasterPipelineDescriptor, CasterVertex, Coverage,
+    DirectionalFrame, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter,
+    MeshCaster, MeshCasterDescriptor, MeshIndices, ModelTransform, OmniFrame, OmniLight,
+    OmniShadow, OmniShadowDescriptor, PositionAttribute, ShadowBindings, ShadowBindingsDescriptor,
+    ShadowCaster, ShadowReport, SpotFrame, SpotLight, SpotShadow, SpotShadowDescriptor, ViewStatus,
+};
+
+use super::gpu::Gpu;
+use super::scene::{Light, Scene};
+use super::technique::{Cost, Footprint, LIGHT_NAME, Lookup, Technique};
+
+/// Aspect of the pictures: width by height.
+const ASPECT: f32 = 16.0 / 9.0;
+
+/// The library's choices.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LibraryOptions {
+    pub filter: Filter,
+    pub bias: Bias,
+    pub map_size: u32,
+    /// Cover what the camera sees, or everything.
+    pub fits_camera: bool,
+}
+
+/// The meshes of a scene as casters.
+pub struct SceneCasters {
+    meshes: Vec<MeshCaster>,
+}
+
+impl SceneCasters {
+    pub fn new(gpu: &Gpu, scene: &Scene) -> Self {
+        let pipeline = CasterPipeline::new(
+            &gpu.device,
+            &CasterPipelineDescriptor {
+                vertex: CasterVertex::BuiltIn {
+                    position: PositionAttribute::float32x3(12),
+                    model: ModelTransform::Identity,
+                },
+                ..Default::default()
+            },
+        )
+        .expect("a valid pipeline");
+        let meshes = scene.meshes.iter().map(|mesh| {
+            MeshCaster::new(
+                &gpu.device,
+                &MeshCasterDescriptor {
+                    label: None,
+                    pipeline: &pipeline,
+                    vertices: &gpu.buffer(&mesh.positions, wgpu::BufferUsages::VERTEX),
+                    indices: MeshIndices::Buffer {
+                        buffer: gpu.buffer(&mesh.indices, wgpu::BufferUsages::INDEX),
+                        format: wgpu::IndexFormat::Uint32,
+                        indices: 0..mesh.indices.len() as u32,
+                        base_vertex: 0,
+                    },
+                    bounds_model: mesh.bounds(),
+                    render_from_model: glam::Mat4::IDENTITY,
+                },
+            )
+            .expect("a valid mesh")
+        });
+        Self {
+            meshes: meshes.collect(),
+        }
+    }
+
+    pub fn list(&self) -> Vec<&dyn ShadowCaster> {
+        self.meshes
+            .iter()
+            .map(|mesh| mesh as &dyn ShadowCaster)
+            .collect()
+    }
+}
+
+enum Shadow {
+    Sun(Box<DirectionalShadow>),
+    Spot(Box<SpotShadow>),
+    Point(Box<OmniShadow>),
+}
+
+/// One light of the library, with its bindings.
+pub struct LibraryTechnique<'a> {
+    scene: &'a Scene,
+    casters: Vec<&'a dyn ShadowCaster>,
+    options: LibraryOptions,
+    shadow: Shadow,
+    bindings: ShadowBindings,
+    report: ShadowReport,
+}
+
+impl<'a> LibraryTechnique<'a> {
+    pub fn new(
+        gpu: &Gpu,
+        scene: &'a Scene,
+        casters: &'a SceneCasters,
+        options: LibraryOptions,
+    ) -> Result<Self, Box<dyn std::error::Error>> {
+        let shadow = create_shadow(&gpu.device, scene, &options)?;
+        let source = match &shadow {
+            Shadow::Sun(sun) => sun.source(),
+            Shadow::Spot(spot) => spot.source(),
+            Shadow::Point(point) => point.source(),
+        };
+        let bindings = ShadowBindings::new(
+            &gpu.device,
+            &ShadowBindingsDescriptor {
+                visibility: wgpu::ShaderStages::COMPUTE,
+                lights: &[(LIGHT_NAME, source)],
+                ..Default::default()
+            },
+        )?;
+        Ok(Self {
+            scene,
+            casters: casters.list(),
+            options,
+            shadow,
+            bindings,
+            report: ShadowReport::default(),
+        })
+    }
+}
+
+fn create_shadow(
+    device: &wgpu::Device,
+    scene: &Scene,
+    options: &LibraryOptions,
+) -> Result<Shadow, wgpu_shadows::ShadowError> {
+    let LibraryOptions {
+        filter,
+        bias,
+        map_size,
+        ..
+    } = *options;
+    Ok(match scene.light {
+        Light::Sun { .. } => {
+            let descriptor = DirectionalShadowDescriptor {
+                label: None,
+                map_size,
+                cascades: scene.cascades,
+                split: CascadeSplit::Logarithmic,
+                filter,
+                bias,
+            };
+            Shadow::Sun(Box::new(DirectionalShadow::new(device, &descriptor)?))
+        }
+        Light::Spot { .. } => {
+            let descriptor = SpotShadowDescriptor {
+                label: None,
+                map_size,
+                filter,
+                bias,
+            };
+            Shadow::Spot(Box::new(SpotShadow::new(device, &descriptor)?))
+        }
+        Light::Point { .. } => {
+            let descriptor = OmniShadowDescriptor {
+                label: None,
+                map_size,
+                filter,
+                bias,
+            };
+            Shadow::Point(Box::new(OmniShadow::new(device, &descriptor)?))
+        }
+    })
+}
+
+impl Technique for LibraryTechnique<'_> {
+    fn record(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) {
+        let scene = self.scene;
+        let (origin, casters) = (scene.origin, &self.casters[..]);
+        let view = scene.camera.view(ASPECT);
+        let camera = self.options.fits_camera.then_some(view);
+        let report = match (&mut self.shadow, scene.light) {
+            (Shadow::Sun(sun), Light::Sun { direction, .. }) => {
+                sun.invalidate();
+                let frame = DirectionalFrame {
+                    origin,
+                    light: DirectionalLight::new(direction),
+                    coverage: camera.map_or(Coverage::Bounds(scene.bounds()), Coverage::Camera),
+                    casters,
+                    receivers: &[],
+                };
+                sun.record(&gpu.device, encoder, &frame)
+            }
+            (
+                Shadow::Spot(spot),
+                Light::Spot {
+                    position_world,
+                    direction,
+                    outer_angle_radians,
+                    range,
+                },
+            ) => {
+                spot.invalidate();
+                let frame = SpotFrame {
+                    origin,
+                    light: SpotLight {
+                        position_world,
+                        direction,
+                        outer_angle_radians,
+                        range,
+                    },
+                    camera,
+                    casters,
+                    receivers: &[],
+                };
+                spot.record(&gpu.device, encoder, &frame)
+            }
+            (
+                Shadow::Point(point),
+                Light::Point {
+                    position_world,
+                    range,
+                },
+            ) => {
+                point.invalidate();
+                let frame = OmniFrame {
+                    origin,
+                    light: OmniLight {
+                        position_world,
+                        range,
+                    },
+                    camera,
+                    casters,
+                    receivers: &[],
+                };
+                point.record(&gpu.device, encoder, &frame)
+            }
+            _ => unreachable!("the shadow is made for the scene's light"),
+        };
+        self.report = report.expect("a valid frame").clone();
+    }
+
+    fn lookup(&self) -> Lookup<'_> {
+        Lookup {
+            wgsl: self.bindings.wgsl(),
+            layout: self.bindings.layout(),
+            bind_group: self.bindings.bind_group(),
+        }
+    }
+
+    fn footprint(&self) -> Footprint {
+        match &self.shadow {
+            Shadow::Sun(sun) => Footprint::of_views(sun.views()),
+            Shadow::Spot(spot) => Footprint::of_views(spot.views()),
+            Shadow::Point(point) => Footprint::of_views(point.views()),
+        }
+    }
+
+    fn cost(&self) -> Cost {
+        let texels_per_layer = u64::from(self.options.map_size).pow(2);
+        let drawn = self
+            .report
+            .views
+            .iter()
+            .filter(|view| view.status == ViewStatus::Drawn);
+        Cost {
+            texels_allocated: self.report.bytes_held / 4,
+            texels_cleared: texels_per_layer * drawn.count() as u64,
+            draws: self.report.draws(),
+            passes: self.report.passes,
+            bytes: self.report.bytes_held,
+            texture_instructions: self.options.filter.texture_instructions(),
+            texels_touched: texels_touched(self.options.filter),
+        }
+    }
+
+    fn band_texels(&self) -> f64 {
+        self.options.filter.reach_texels() + 1.0
+    }
+
+    fn band_world(&self) -> f64 {
+        // The corners of the cube of offsets, which grows up to twofold with the distance from the viewer.
+        2.0 * 3f64.sqrt() * f64::from(self.options.filter.radius_world())
+    }
+
+    fn takes_world_positions(&self) -> bool {
+        false
+    }
+}
+
+/// Texels that one lookup's weights are made of.
+fn texels_touched(filter: Filter) -> u32 {
+    match filter {
+        Filter::Nearest => 1,
+        Filter::Hardware | Filter::Bilinear { .. } => 4,
+        Filter::Box => 9,
+        Filter::TentNarrow { .. } => 16,
+        Filter::TentMedium { .. } => 36,
+        Filter::TentWide { .. } => 64,
+        // Four texels a gather.
+        Filter::Penumbra { .. } => 4 * filter.texture_instructions(),
+        // One texel a sample.
+        _ => filter.texture_instructions(),
+    }
+}

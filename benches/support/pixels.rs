@@ -1,0 +1,66 @@
+//! What a camera sees, pixel by pixel, with the truth about each.
+
+use glam::DVec3;
+
+use super::edge;
+use super::parallel;
+use super::scene::Scene;
+use super::truth::World;
+
+/// A visible surface point that faces the light and lies within its reach.
+#[derive(Clone, Copy, Debug)]
+pub struct Pixel {
+    /// Place in the picture, row by row from the top.
+    pub index: u32,
+    /// In render space.
+    pub position: DVec3,
+    /// Geometric, toward the viewer.
+    pub normal: DVec3,
+    /// True visibility of the light, in [0, 1].
+    pub visibility: f64,
+    /// Distance toward the light of what hides its middle; none where that is seen.
+    pub occluder_world: Option<f64>,
+    /// Distance across the light's rays to the nearest place on the tangent plane where the middle of the light turns from
+    /// seen to hidden or back; infinite where that is farther than any filter reaches.
+    pub edge_world: f64,
+}
+
+/// How much work the truth may be.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// Width and height of the picture.
+    pub picture: [u32; 2],
+    /// Points of a light with extent, per side of their square.
+    pub disc_side: u32,
+    /// Rays per ring in the search for edges.
+    pub ring_rays: u32,
+}
+
+/// The pixels that count, row by row: those where a surface faces the light.
+pub fn visible(scene: &Scene, world: &World, effort: &Effort) -> Vec<Pixel> {
+    let eye = scene.camera.eye.as_dvec3();
+    let rays: Vec<(u32, DVec3)> = (0..).zip(scene.camera.pixel_rays(effort.picture)).collect();
+    let label = format!("truth of {}", scene.name);
+    let pixels = parallel::map(&label, &rays, |&(index, ray)| {
+        let hit = world.first_hit(eye, ray)?;
+        let position = eye + ray * hit.distance;
+        let (toward_light, _) = world.light().toward_light_from(position);
+        if hit.normal.dot(toward_light) <= 0.0 || !world.light().reaches(position) {
+            return None;
+        }
+        Some(Pixel {
+            index,
+            position,
+            normal: hit.normal,
+            visibility: world.visibility(position, hit.normal, effort.disc_side),
+            occluder_world: world.occluder(position, hit.normal),
+            edge_world: edge::distance(
+                world,
+                position,
+                hit.normal,
+                &edge::Rings::of_scene(scene, effort.ring_rays),
+            ),
+        })
+    });
+    pixels.into_iter().flatten().collect()
+}

@@ -1,0 +1,44 @@
+//! Time and allocations of work on the CPU.
+
+use std::alloc::System;
+use std::time::Instant;
+
+use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
+
+use super::statistics::Spread;
+
+/// Counts what the program allocates.
+#[global_allocator]
+static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+
+/// What one call takes.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    pub microseconds: f64,
+    pub allocations: f64,
+}
+
+/// Medians over `repeats` calls of `work`; `prepare` runs before each and is not counted.
+pub fn measure<P, R>(
+    repeats: u32,
+    mut prepare: impl FnMut() -> P,
+    mut work: impl FnMut(&mut P) -> R,
+) -> Effort {
+    let runs: Vec<(f64, f64)> = (0..repeats)
+        .map(|_| {
+            let mut prepared = prepare();
+            let region = Region::new(ALLOCATOR);
+            let start = Instant::now();
+            let result = work(&mut prepared);
+            let microseconds = start.elapsed().as_secs_f64() * 1e6;
+            let change = region.change();
+            drop(result);
+            let allocations = change.allocations + change.reallocations;
+            (microseconds, allocations as f64)
+        })
+        .collect();
+    Effort {
+        microseconds: Spread::of(runs.iter().map(|run| run.0)).median,
+        allocations: Spread::of(runs.iter().map(|run| run.1)).median,
+    }
+}

@@ -1,0 +1,17 @@
+// What both lookups of a cube map read.
+
+struct View {
+    clip_from_world: mat4x4<f32>,
+    // Far distance in w.
+    light: vec4<f32>,
+    viewer_or_sun: vec4<f32>,
+}
+
+@group(1) @binding(0) var<uniform> view: View;
+@group(1) @binding(1) var map: texture_depth_cube;
+@group(1) @binding(2) var map_sampler: sampler;
+
+// Distance from the light to what it meets first along `direction`.
+fn stored_distance(direction: vec3<f32>) -> f32 {
+    return textureSampleLevel(map, map_sampler, direction, 0) * view.light.w;
+}

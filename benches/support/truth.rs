@@ -1,0 +1,248 @@
+//! The truth: rays through the triangles, in double precision.
+
+use glam::DVec3;
+use parry3d_f64::math::Vec3 as ParryVec3;
+use parry3d_f64::query::Ray;
+use parry3d_f64::shape::{CompositeShapeRef, TriMesh};
+
+use super::scene::{Light, Scene};
+
+/// The triangles of a scene, and its light, in render space.
+pub struct World {
+    mesh: TriMesh,
+    normals: Vec<DVec3>,
+    /// How far rays start from the surface that they leave, along its normal: far above rounding, far below any feature.
+    lift: f64,
+    light: LightInWorld,
+}
+
+/// The light in render space.
+#[derive(Clone, Copy, Debug)]
+pub enum LightInWorld {
+    Far {
+        /// Unit length.
+        toward_light: DVec3,
+        /// Tangent of half the angular diameter.
+        disc_tangent: f64,
+    },
+    Near {
+        position: DVec3,
+        range: f64,
+        /// Axis of the cone and the cosine of its half-angle; -2 for none.
+        axis: DVec3,
+        cone_cosine: f64,
+    },
+}
+
+/// A surface point that a ray met.
+#[derive(Clone, Copy, Debug)]
+pub struct Hit {
+    pub distance: f64,
+    /// Geometric, unit length, on the side that the ray came from.
+    pub normal: DVec3,
+}
+
+impl World {
+    pub fn new(scene: &Scene) -> Self {
+        let triangles: Vec<[DVec3; 3]> = scene
+            .meshes
+            .iter()
+            .flat_map(|mesh| mesh.triangles())
+            .collect();
+        Self::from_triangles(
+            &triangles,
+            scene.diameter(),
+            LightInWorld::new(&scene.light, scene.origin),
+        )
+    }
+
+    /// `diameter` is the size of the scene, from which the least distance of rays derives.
+    pub fn from_triangles(triangles: &[[DVec3; 3]], diameter: f64, light: LightInWorld) -> Self {
+        let vertices = triangles.iter().flatten().copied().map(to_parry).collect();
+        let indices = (0..triangles.len() as u32)
+            .map(|triangle| [0, 1, 2].map(|corner| 3 * triangle + corner))
+            .collect();
+        Self {
+            mesh: TriMesh::new(vertices, indices).expect("a mesh with triangles"),
+            normals: triangles
+                .iter()
+                .map(|[a, b, c]| (b - a).cross(c - a).normalize())
+                .collect(),
+            lift: 1e-9 * diameter,
+            light,
+        }
+    }
+
+    pub fn light(&self) -> &LightInWorld {
+        &self.light
+    }
+
+    /// The nearest surface along a ray.
+    pub fn first_hit(&self, from: DVec3, direction: DVec3) -> Option<Hit> {
+        let (triangle, distance) = self.cast(from, direction, f64::INFINITY)?;
+        let normal = self.normals[triangle as usize];
+        Some(Hit {
+            distance,
+            normal: if normal.dot(direction) > 0.0 {
+                -normal
+            } else {
+                normal
+            },
+        })
+    }
+
+    /// Distance from a surface point to the first thing between it and the middle of the light; none where it is lit.
+    pub fn occluder(&self, position: DVec3, normal: DVec3) -> Option<f64> {
+        let (direction, reach) = self.light.toward_light_from(position);
+        self.occluder_along(position, normal, direction, reach)
+    }
+
+    /// Is the middle of the light hidden from a surface point?
+    pub fn is_hidden(&self, position: DVec3, normal: DVec3) -> bool {
+        self.occluder(position, normal).is_some()
+    }
+
+    /// Is there nothing between two places on one tangent plane?
+    pub fn is_clear(&self, from: DVec3, to: DVec3, normal: DVec3) -> bool {
+        let way = to - from;
+        let (direction, reach) = (way.normalize(), way.length());
+        self.occluder_along(from, normal, direction, reach)
+            .is_none()
+    }
+
+    /// Share of the light that a surface point sees: exact for lights without extent, else the mean over `side * side`
+    /// stratified points of its disc. Where the rim and a coarse grid agree, so does everything between.
+    pub fn visibility(&self, position: DVec3, normal: DVec3, side: u32) -> f64 {
+        let (toward_light, disc_tangent) = match self.light {
+            LightInWorld::Far {
+                toward_light,
+                disc_tangent,
+            } if disc_tangent > 0.0 => (toward_light, disc_tangent),
+            _ => return f64::from(u8::from(!self.is_hidden(position, normal))),
+        };
+        let (across, along) = toward_light.any_orthonormal_pair();
+        let sees = |[x, y]: [f64; 2]| {
+            let on_disc = (across * x + along * y) * disc_tangent;
+            let direction = (toward_light + on_disc).normalize();
+            self.occluder_along(position, normal, direction, f64::INFINITY)
+                .is_none()
+        };
+        let rim = (0..24).map(|step| {
+            let angle = std::f64::consts::TAU * f64::from(step) / 24.0;
+            [angle.cos(), angle.sin()]
+        });
+        let coarse = rim.chain(disc_points(6));
+        let seen = coarse.clone().filter(|&place| sees(place)).count();
+        if seen == 0 {
+            return 0.0;
+        }
+        if seen == coarse.count() {
+            return 1.0;
+        }
+        let seen = disc_points(side).filter(|&place| sees(place)).count();
+        seen as f64 / f64::from(side * side)
+    }
+
+    fn occluder_along(
+        &self,
+        position: DVec3,
+        normal: DVec3,
+        direction: DVec3,
+        reach: f64,
+    ) -> Option<f64> {
+        let start = position + normal * self.lift;
+        self.cast(start, direction, reach)
+            .map(|(_, distance)| distance)
+    }
+
+    fn cast(&self, from: DVec3, direction: DVec3, reach: f64) -> Option<(u32, f64)> {
+        let ray = Ray::new(to_parry(from), to_parry(direction));
+        CompositeShapeRef(&self.mesh).cast_local_ray(&ray, reach, false)
+    }
+}
+
+impl LightInWorld {
+    pub fn new(light: &Light, origin: DVec3) -> Self {
+        let near = |position: DVec3, range: f32, axis: DVec3, cone_cosine: f64| Self::Near {
+            position: position - origin,
+            range: f64::from(range),
+            axis,
+            cone_cosine,
+        };
+        match *light {
+            Light::Sun {
+                direction,
+                angular_diameter_radians,
+            } => Self::Far {
+                toward_light: -direction.as_dvec3().normalize(),
+                disc_tangent: (angular_diameter_radians * 0.5).tan(),
+            },
+            Light::Spot {
+                position_world,
+                direction,
+                outer_angle_radians,
+                range,
+            } => near(
+                position_world,
+                range,
+                direction.as_dvec3().normalize(),
+                f64::from(outer_angle_radians).cos(),
+            ),
+            Light::Point {
+                position_world,
+                range,
+            } => near(position_world, range, DVec3::Y, -2.0),
+        }
+    }
+
+    /// Unit direction toward the middle of the light, and the distance to it.
+    pub fn toward_light_from(&self, position: DVec3) -> (DVec3, f64) {
+        match *self {
+            Self::Far { toward_light, .. } => (toward_light, f64::INFINITY),
+            Self::Near {
+                position: light, ..
+            } => {
+                let way = light - position;
+                (way.normalize(), way.length())
+            }
+        }
+    }
+
+    /// Does the light shine on a place at all, with nothing in between?
+    pub fn reaches(&self, place: DVec3) -> bool {
+        match *self {
+            Self::Far { .. } => true,
+            Self::Near {
+                position,
+                range,
+                axis,
+                cone_cosine,
+            } => {
+                let way = place - position;
+                way.length() < range && way.normalize().dot(axis) > cone_cosine
+            }
+        }
+    }
+}
+
+/// Middles of `side * side` patches of equal area on the unit disc (the concentric map of Shirley and Chiu 1997).
+fn disc_points(side: u32) -> impl Iterator<Item = [f64; 2]> + Clone {
+    let place = move |index: u32| 2.0 * (f64::from(index) + 0.5) / f64::from(side) - 1.0;
+    (0..side * side).map(move |index| {
+        let (x, y) = (place(index % side), place(index / side));
+        let quarter = std::f64::consts::FRAC_PI_4;
+        let (radius, angle) = if x.abs() > y.abs() {
+            (x, quarter * y / x)
+        } else if y != 0.0 {
+            (y, 2.0 * quarter - quarter * x / y)
+        } else {
+            (0.0, 0.0)
+        };
+        [radius * angle.cos(), radius * angle.sin()]
+    })
+}
+
+/// The ray caster brings its own version of the vector library.
+fn to_parry(vector: DVec3) -> ParryVec3 {
+    ParryVec3::from_array(vector.to_array())
+}
