@@ -43,6 +43,27 @@ impl Default for DirectionalShadowDescriptor<'_> {
     }
 }
 
+impl DirectionalShadowDescriptor<'_> {
+    /// One gather a lookup and a quarter of the default's texels: the cheapest that keeps edges smooth, with one and a half
+    /// times the default's error.
+    pub const CHEAP: Self = Self {
+        label: None,
+        map_size: 1024,
+        cascades: 1,
+        split: CascadeSplit::Logarithmic,
+        filter: Filter::Bilinear { sharpness: 1.0 },
+        bias: Bias::Auto,
+    };
+
+    /// Nine gathers a lookup and four times the default's texels, for two thirds of the default's error. Measured, as are the
+    /// default and [`CHEAP`](Self::CHEAP), by `cargo bench --bench speed_vs_error`: none of the three is beaten at its cost.
+    pub const ACCURATE: Self = Self {
+        map_size: 4096,
+        filter: Filter::TentMedium { sharpness: 4.0 },
+        ..Self::CHEAP
+    };
+}
+
 /// A light so far away that its rays are parallel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectionalLight {
