@@ -49,6 +49,8 @@ pub(crate) struct LayerBase {
     pub anchor_render: Vec3,
     /// World distance beyond which the light does not reach; infinite for a directional one.
     pub reach_world: f64,
+    /// It needed drawing and was put off.
+    pub deferred: bool,
 }
 
 impl LayerBase {
@@ -57,6 +59,7 @@ impl LayerBase {
             layer,
             anchor_render: Vec3::ZERO,
             reach_world: f64::INFINITY,
+            deferred: false,
         }
     }
 }
@@ -230,6 +233,10 @@ impl LightMaps {
         let reports = layers
             .iter()
             .map(|base| match by_layer[base.layer as usize] {
+                None if base.deferred => ViewReport {
+                    status: ViewStatus::Deferred,
+                    ..ViewReport::empty(base.layer, caster_count)
+                },
                 None => ViewReport::empty(base.layer, caster_count),
                 Some(draws) => view_report(draws, &self.sampling, caster_count),
             });

@@ -23,6 +23,8 @@ struct SlotState {
     waited: u32,
     /// Its layers have been drawn, or found to need nothing, since it came.
     has_map: bool,
+    /// Where it stood when they were drawn.
+    position_world: DVec3,
 }
 
 /// A light of a frame.
@@ -117,14 +119,22 @@ impl LocalLights {
         let (mut layers, mut views) = (Vec::new(), Vec::new());
         for (light, candidate) in frame.lights.iter().zip(&mut candidates) {
             let first_layer = light.slot * light.view_count;
+            let state = &self.slots[light.slot as usize];
+            // A light that is put off is asked where it stood when its map was drawn.
+            let (position_world, reach_world) = if candidate.refreshed || !state.has_map {
+                (light.position_world, candidate.fit.reach)
+            } else {
+                (state.position_world, state.fit.reach)
+            };
             layers.extend((0..light.view_count).map(|view| LayerBase {
                 layer: first_layer + view,
-                anchor_render: (light.position_world - frame.origin).as_vec3(),
-                reach_world: candidate.fit.reach,
+                anchor_render: (position_world - frame.origin).as_vec3(),
+                reach_world,
+                deferred: !candidate.refreshed,
             }));
             if candidate.refreshed {
                 views.append(&mut candidate.views);
-            } else if self.slots[light.slot as usize].has_map {
+            } else if state.has_map {
                 let held = maps.views_in(first_layer..first_layer + light.view_count);
                 views.extend(held.map(|draws| ViewDraws {
                     deferred: true,
@@ -146,6 +156,7 @@ impl LocalLights {
                     fit: candidate.fit,
                     waited: 0,
                     has_map: true,
+                    position_world: light.position_world,
                 };
             } else {
                 state.waited = state.waited.saturating_add(1);

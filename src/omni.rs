@@ -37,8 +37,8 @@ impl Default for OmniShadowDescriptor<'_> {
 /// A light at a place that shines in every direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OmniLight {
-    /// Absolute world position (f64). It may lie anywhere, on a surface or on a vertex included; what is nearer to it than
-    /// 1/1024 of its reach casts nothing.
+    /// Absolute world position (f64). It may lie anywhere, on a surface or on a vertex included; what is nearer to it along
+    /// every axis than 1/1024 of its reach casts nothing.
     pub position_world: DVec3,
     /// Distance in world units beyond which the light neither draws casters nor shadows receivers (visibility is 1 there, and
     /// the engine's attenuation should be 0); above 0, infinity allowed.

@@ -37,7 +37,7 @@ impl Default for SpotShadowDescriptor<'_> {
 /// A light at a place that shines into a cone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpotLight {
-    /// Absolute world position (f64); what is nearer to it than 1/1024 of its reach casts nothing.
+    /// Absolute world position (f64); what is nearer to it along its axis than 1/1024 of its reach casts nothing.
     pub position_world: DVec3,
     /// Direction in which it shines, any length but zero; world axes.
     pub direction: Vec3,

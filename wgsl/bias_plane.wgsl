@@ -12,7 +12,9 @@ const SHADOW_MAX_GRADIENT: f32 = 1e4;
 fn shadow_receiver_plane(view: ShadowView, position: vec3<f32>, normal: vec3<f32>) -> ShadowReceiver {
     let relative = position - view.anchor;
     let surface = shadow_plane(view, relative, normal);
-    let offset = shadow_normal_offset(view, relative, surface, view.offset_texels) + view.offset_world;
+    let wanted = shadow_normal_offset(view, relative, surface, view.offset_texels) + view.offset_world;
+    // Never past the light: under the widest cones a texel is larger than the light's height over the surface.
+    let offset = min(wanted, 0.5 * shadow_light_height(view, relative, normal));
     let lifted = relative + normal * offset;
     let plane = shadow_plane(view, lifted, normal);
     // A plane seen edge on has no gradient, and neither has a normal that is zero or not a number.

@@ -87,7 +87,11 @@ fn shadow_receiver_at(
     let depth = place.z / place.w;
     var receiver: ShadowReceiver;
     receiver.texel = place.xy / place.w;
-    receiver.depth = depth + depth_offset + depth * view.depth_error_relative;
+    let on_map = all(receiver.texel >= vec2<f32>(0.0)) && all(receiver.texel <= vec2<f32>(view.map_size));
+    // Moved past a local light or off the map, as an offset along the normal may under the widest cones: lit, by a depth that
+    // is nearer than any map's.
+    let kept = place.w > 0.0 && on_map;
+    receiver.depth = select(2.0, depth + depth_offset + depth * view.depth_error_relative, kept);
     receiver.gradient = gradient;
     receiver.layer = view.layer;
     receiver.map_size = view.map_size;
@@ -117,6 +121,11 @@ fn shadow_normal_offset(
 ) -> f32 {
     let w = dot(shadow_w_row(view), vec4<f32>(relative, 1.0));
     return texels * max(w, 0.0) * (abs(plane.x) + abs(plane.y));
+}
+
+// World distance of the light from a place's tangent plane; endless for a directional light.
+fn shadow_light_height(view: ShadowView, relative: vec3<f32>, normal: vec3<f32>) -> f32 {
+    return select(1e30, abs(dot(normal, relative)), view.light.w > 0.0);
 }
 
 // What w is made of: one for an orthographic view, the distance along the axis for a perspective one.

@@ -82,12 +82,23 @@ pub struct Phong {
     pipeline: wgpu::RenderPipeline,
     frame_layout: wgpu::BindGroupLayout,
     shadow_group: u32,
+    /// More lights than the one of a frame, in the group behind that of the shadows.
+    lights: Option<wgpu::BindGroup>,
     format: wgpu::TextureFormat,
     sample_count: u32,
 }
 
 impl Phong {
     pub fn new(gpu: &Gpu, descriptor: &PhongDescriptor<'_>) -> Self {
+        Self::with_lights(gpu, descriptor, None)
+    }
+
+    /// The same, with a bind group of lights for the fragment stage behind that of the shadows.
+    pub fn with_lights(
+        gpu: &Gpu,
+        descriptor: &PhongDescriptor<'_>,
+        lights: Option<(&wgpu::BindGroupLayout, wgpu::BindGroup)>,
+    ) -> Self {
         let layout = wgpu::BindGroupLayoutDescriptor {
             label: Some("frame"),
             entries: &[wgpu::BindGroupLayoutEntry {
@@ -103,9 +114,15 @@ impl Phong {
         };
         let frame_layout = gpu.device.create_bind_group_layout(&layout);
         Self {
-            pipeline: create_pipeline(gpu, descriptor, &frame_layout),
+            pipeline: create_pipeline(
+                gpu,
+                descriptor,
+                &frame_layout,
+                lights.as_ref().map(|(layout, _)| *layout),
+            ),
             frame_layout,
             shadow_group: descriptor.shadow_group,
+            lights: lights.map(|(_, group)| group),
             format: descriptor.format,
             sample_count: descriptor.sample_count,
         }
@@ -163,6 +180,9 @@ impl Phong {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &frame, &[]);
         pass.set_bind_group(self.shadow_group, shadows, &[]);
+        if let Some(lights) = &self.lights {
+            pass.set_bind_group(self.shadow_group + 1, lights, &[]);
+        }
         for batch in batches {
             pass.set_vertex_buffer(0, batch.mesh.vertices.slice(..));
             pass.set_vertex_buffer(1, batch.instances.slice(..));
@@ -199,6 +219,7 @@ fn create_pipeline(
     gpu: &Gpu,
     descriptor: &PhongDescriptor<'_>,
     frame_layout: &wgpu::BindGroupLayout,
+    lights_layout: Option<&wgpu::BindGroupLayout>,
 ) -> wgpu::RenderPipeline {
     let device = &gpu.device;
     let wgsl = [
@@ -213,6 +234,7 @@ fn create_pipeline(
     let mut layouts = vec![None; descriptor.shadow_group as usize + 1];
     layouts[0] = Some(frame_layout);
     layouts[descriptor.shadow_group as usize] = Some(descriptor.shadow_layout);
+    layouts.extend(lights_layout.map(Some));
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some("scene"),
         bind_group_layouts: &layouts,

@@ -59,6 +59,7 @@ pub fn receiver(
             let offset =
                 f64::from(view.offset_texels) * clip_w(view, relative).max(0.0) * steepness
                     + f64::from(view.offset_world);
+            let offset = offset.min(0.5 * light_height(view, relative, normal));
             let lifted = relative + normal * offset;
             let plane = plane_across_map(view, lifted, normal);
             if plane.z.abs() > 0.0 {
@@ -76,6 +77,9 @@ pub fn receiver(
             let offset =
                 texels * clip_w(view, relative).max(0.0) * steepness / (1.0 - growth.min(0.9));
             let distance = offset + f64::from(view.offset_world);
+            if growth >= 0.9 || distance >= light_height(view, relative, normal) {
+                return receiver_at(view, position, relative, DVec2::ZERO, 2.0);
+            }
             let moved = relative + normal * if distance > 0.0 { distance } else { 0.0 };
             receiver_at(view, position, moved, DVec2::ZERO, depth_error)
         }
@@ -260,6 +264,15 @@ fn clip_w(view: &ShadowViewUniform, relative: DVec3) -> f64 {
     w_row(view).dot(relative.extend(1.0))
 }
 
+/// World distance of the light from a place's tangent plane; endless for a directional light.
+fn light_height(view: &ShadowViewUniform, relative: DVec3, normal: DVec3) -> f64 {
+    if view.light[3] > 0.0 {
+        normal.dot(relative).abs()
+    } else {
+        f64::INFINITY
+    }
+}
+
 fn plane_across_map(view: &ShadowViewUniform, relative: DVec3, normal: DVec3) -> DVec3 {
     let plane = normal.extend(-normal.dot(relative));
     let row = |row: [f32; 4]| Vec4::from_array(row).as_dvec4().dot(plane);
@@ -292,10 +305,17 @@ fn receiver_at(
     offset: f64,
 ) -> Receiver {
     let place = matrix(view) * moved.extend(1.0);
+    let texel = place.truncate().truncate() / place.w;
+    let size = DVec2::splat(f64::from(view.map_size));
+    let on_map = texel.cmpge(DVec2::ZERO).all() && texel.cmple(size).all();
     let depth = place.z / place.w;
     Receiver {
-        texel: place.truncate().truncate() / place.w,
-        depth: depth + offset + depth * f64::from(view.depth_error_relative),
+        texel,
+        depth: if place.w > 0.0 && on_map {
+            depth + offset + depth * f64::from(view.depth_error_relative)
+        } else {
+            2.0
+        },
         gradient,
         penumbra: Vec2::from_array(view.penumbra).as_dvec2(),
         inside: holds(view, position),

@@ -1,4 +1,5 @@
-//! A point light: no seam between its faces shows, its shadows are where a ray caster has them, and its faces cost what they must.
+//! A point light: no seam between its faces shows, its shadows are where a ray caster has them, and its faces cost what they
+//! must.
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
@@ -98,8 +99,8 @@ fn seam_directions(texel: f64) -> Vec<DVec3> {
     directions
 }
 
-/// Where rays from the light into the seams first meet the triangles, with the normal of the lit side; places nearer to the border of
-/// their triangle than a kernel reaches (`border`, a tangent) are left out where the neighbour leans another way.
+/// Where rays from the light into the seams first meet the triangles, with the normal of the lit side; places nearer to the
+/// border of their triangle than a kernel reaches (`border`, a tangent) are left out where the neighbour leans another way.
 fn seam_points(triangles: &[Triangle], light: DVec3, texel: f64, border: f64) -> Vec<Point> {
     let mut points = Vec::new();
     for direction in seam_directions(texel) {
@@ -144,8 +145,8 @@ fn planar_samplings() -> impl Iterator<Item = (Filter, Bias)> {
 
 const SEAM_MAP: u32 = 250;
 
-/// Planes around the light that all reach across seams and corners, one at a time: six along the axes at a distance that makes ties exact,
-/// and oblique ones; and a sphere of large facets around the light.
+/// Planes around the light that all reach across seams and corners, one at a time: six along the axes at a distance that
+/// makes ties exact, and oblique ones; and a sphere of large facets around the light.
 fn seam_scenes(gpu: &Gpu) -> Vec<(String, Scene, DVec3, Vec<Point>)> {
     let texel = 2.0 / f64::from(SEAM_MAP);
     let mut random = Random::new(41);
@@ -164,7 +165,7 @@ fn seam_scenes(gpu: &Gpu) -> Vec<(String, Scene, DVec3, Vec<Point>)> {
         assert!(points.len() > 300, "{normal}: {} points", points.len());
         scenes.push((format!("plane {normal}"), scene, light, points));
     }
-    let sphere = Mesh::sphere(Vec3::new(0.4, 1.1, -0.1), 3.0, 9);
+    let sphere = Mesh::sphere(Vec3::new(0.4, 1.1, -0.1), 3.0, 5);
     let scene = Scene::new(gpu, &[sphere]);
     // Facets lean toward each other: a kernel of the widest filter, its border and a texel of rounding stay on one. Texels
     // grow toward the corners of a face, by the square root of three at most.
@@ -264,11 +265,10 @@ fn shadows_are_where_rays_have_them() {
             // Reach, half a texel of stairs, and the residual offset; toward a face's corner along both axes at once.
             let texels = (filter.reach_texels() + 1.5) * 2.0_f64.sqrt() * 1.05;
             let tangent = texels * 2.0 / f64::from(MAP);
-            // What a normal offset moves out of a shadow near a contact is its stated gap, not an error of place.
             let all = |_: DVec3| true;
             let truth = settled(&scene.triangles, light, tangent, 6000, &mut random, all);
             let [dark, lit] = truth.counts();
-            assert!(dark > 200 && lit > 1500, "{dark} dark, {lit} lit");
+            assert!(dark > 80 && lit > 1500, "{dark} dark, {lit} lit");
             let seen = lamp.ask.points(gpu, &truth.points);
             truth.assert_agrees(&seen, &lamp.name);
         }

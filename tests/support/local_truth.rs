@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::support::probe::Point;
 use crate::support::random::Random;
-use crate::support::scene::{Triangle, occluded};
+use crate::support::scene::Triangle;
 
 /// Receivers whose truth is the same over the whole footprint of a lookup.
 #[derive(Default)]
@@ -34,8 +34,9 @@ impl Settled {
     }
 }
 
-/// `count` receivers on the lit sides of `triangles`, of which those remain that are settled: the ray through the receiver and
-/// sixteen rays around it, `tangent` (the tangent of an angle) aside, meet the receiver's plane at places that are all dark or all lit.
+/// `count` receivers on the lit sides of `triangles`, of which those remain that are settled: the ray through the receiver
+/// and sixteen rays around it, `tangent` (the tangent of an angle) aside, meet the receiver's plane at places that are all
+/// dark or all lit.
 pub fn settled(
     triangles: &[Triangle],
     light: DVec3,
@@ -55,7 +56,7 @@ pub fn settled(
         if facing < 0.1 || !wanted(place) {
             continue;
         }
-        let dark_at = |at: DVec3| occluded(triangles, at, light - at, 1e-7);
+        let dark_at = |at: DVec3| hides(triangles, at, light);
         let dark = dark_at(place);
         let from_light = -to_light;
         let side = from_light.any_orthonormal_vector();
@@ -79,4 +80,13 @@ pub fn settled(
         }
     }
     settled
+}
+
+/// Does anything lie between `point` and the light?
+fn hides(triangles: &[Triangle], point: DVec3, light: DVec3) -> bool {
+    let between = 1e-7..1.0;
+    triangles
+        .iter()
+        .filter_map(|triangle| triangle.hit(point, light - point))
+        .any(|t| between.contains(&t))
 }

@@ -1,0 +1,86 @@
+//! A hall with a sun, four spots and 32 lamps, all with shadows, in one bind group.
+//!
+//! `cargo run --example many_lights -- [FOLDER] --frames N` draws N pictures into `target/many_lights` or the folder named, and
+//! prints for each frame what its shadows cost. Five of the lamps and one of the spots move, and a budget of views a frame
+//! refreshes the most important of them first; a light that stands still costs nothing from the second frame on.
+//!
+//! ```text
+//! hall.rs          floor, walls, skylight, columns, and what stands about
+//! lights.rs        where the lights are, and how they move
+//! shadows.rs       the sun, two pools, and one bind group for all of them
+//! painter.rs       the pictures
+//! table.rs         what a frame cost
+//! hall.wgsl        the fragment stage: loops over the lights
+//! ../common        device, meshes and Blinn-Phong
+//! ```
+
+#[path = "../common/mod.rs"]
+mod common;
+mod hall;
+mod lights;
+mod painter;
+mod shadows;
+mod table;
+
+use std::error::Error;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use common::gpu::Gpu;
+use common::{arguments, picture};
+use hall::Hall;
+use lights::Lights;
+use painter::Painter;
+use shadows::Shadows;
+
+/// Draws a hall with many lights.
+#[derive(Parser)]
+struct Arguments {
+    /// Folder for the pictures.
+    #[arg(default_value = "target/many_lights")]
+    folder: PathBuf,
+    /// Pictures of the moving lights.
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    frames: u32,
+    /// Most views of lamps drawn in a frame; the first frame, in which all are new, has no limit.
+    #[arg(long, default_value_t = 12)]
+    budget: u32,
+}
+
+/// Width and height of the pictures.
+const SIZE: [u32; 2] = [960, 540];
+
+fn main() -> ExitCode {
+    arguments::run("many_lights", run)
+}
+
+fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
+    let gpu = Gpu::new()?;
+    picture::make_folder(&arguments.folder)?;
+    let hall = Hall::new(&gpu.device)?;
+    let casters = hall.casters();
+    let mut shadows = Shadows::new(&gpu.device)?;
+    let painter = Painter::new(&gpu, shadows.bindings());
+    println!("{} meshes cast", casters.len());
+    for frame in 0..arguments.frames {
+        let lights = Lights::at(frame);
+        let camera = hall::camera(SIZE);
+        let budget = (frame > 0).then_some(arguments.budget);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        shadows.record(
+            &gpu.device,
+            &mut encoder,
+            &lights,
+            &camera,
+            &casters,
+            budget,
+        )?;
+        let pixels = painter.draw(&gpu, encoder, &hall, &lights, &shadows, &camera)?;
+        let path = arguments.folder.join(format!("frame-{frame:03}.png"));
+        picture::save(&path, &pixels, SIZE)?;
+        println!("\n{}\n{}", path.display(), table::of(&shadows));
+    }
+    Ok(())
+}

@@ -1,0 +1,249 @@
+//! An engine with its own bind groups: maps, uniform buffers and one sampler under its own names, and of the library only the
+//! WGSL modules, called with these as arguments.
+//!
+//! `cargo run --example own_layout` draws a floor, a box and a ball under a sun and a lamp into `target/own_layout.png`. What
+//! to look at is [`layout`], [`run`] and `own_layout.wgsl`; the rest is the scene.
+
+#[path = "common/mod.rs"]
+mod common;
+
+use std::error::Error;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Parser;
+use glam::{DVec3, Mat4, Vec3};
+use wgpu_shadows::{
+    CasterPipeline, CasterPipelineDescriptor, CasterVertex, Coverage, DirectionalFrame,
+    DirectionalLight, DirectionalShadow, MeshCaster, MeshCasterDescriptor, MeshIndices,
+    ModelTransform, OmniFrame, OmniLight, OmniShadow, PositionAttribute, ShadowCaster, shader,
+};
+
+use common::camera::Camera;
+use common::gpu::Gpu;
+use common::mesh::{Instance, Object, Vertex, cube, sphere, square};
+use common::phong::{Batch, Lighting, Phong, PhongDescriptor, Picture};
+use common::{arguments, picture};
+
+/// Draws a scene whose shadows lie in the engine's own bind group.
+#[derive(Parser)]
+struct Arguments {
+    /// The picture.
+    #[arg(default_value = "target/own_layout.png")]
+    file: PathBuf,
+}
+
+const SIZE: [u32; 2] = [960, 540];
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+const TOWARD_SUN: Vec3 = Vec3::new(0.5, 0.8, 0.45);
+/// As in [`FRAGMENT`].
+const LAMP: OmniLight = OmniLight {
+    position_world: DVec3::new(-1.2, 1.6, 1.4),
+    range: 9.0,
+};
+
+/// `shade` is Blinn-Phong under the sun; the lamp comes on top.
+const FRAGMENT: &str = "
+@fragment
+fn fragment(surface: Surface) -> @location(0) vec4<f32> {
+    let sun = shade(surface, sunlight(surface.position, surface.normal));
+    let to_lamp = vec3<f32>(-1.2, 1.6, 1.4) - surface.position;
+    let falloff = max(1.0 - length(to_lamp) / 9.0, 0.0);
+    let facing = max(dot(surface.normal, normalize(to_lamp)), 0.0);
+    let lamp = lamplight(surface.position, surface.normal) * facing * falloff * falloff;
+    return vec4<f32>(sun + surface.albedo * vec3<f32>(1.2, 0.62, 0.25) * lamp, 1.0);
+}
+";
+
+fn main() -> ExitCode {
+    arguments::run("own_layout", run)
+}
+
+fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
+    let gpu = Gpu::new()?;
+    let mut sun = DirectionalShadow::new(&gpu.device, &Default::default())?;
+    let mut lamp = OmniShadow::new(&gpu.device, &Default::default())?;
+
+    // The library's WGSL, the engine's bindings and functions behind it, and a group that holds what they name.
+    let modules = shader::compose(&["bias_plane", "filter_tent_narrow", "cube_face", "normal"])?;
+    let layout = layout(&gpu.device);
+    let sampler = gpu.device.create_sampler(&Default::default());
+    let resources = [
+        wgpu::BindingResource::Sampler(&sampler),
+        wgpu::BindingResource::TextureView(sun.texture_view()),
+        sun.uniform_buffer().as_entire_binding(),
+        wgpu::BindingResource::TextureView(lamp.texture_view()),
+        lamp.uniform_buffer().as_entire_binding(),
+    ];
+    let entries: Vec<_> = (0..)
+        .zip(resources)
+        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+        .collect();
+    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("the engine's own"),
+        layout: &layout,
+        entries: &entries,
+    });
+    let phong = Phong::new(
+        &gpu,
+        &PhongDescriptor {
+            visibility_wgsl: &(modules + include_str!("own_layout.wgsl")),
+            fragment_wgsl: FRAGMENT,
+            fragment_entry: "fragment",
+            shadow_group: 1,
+            shadow_layout: &layout,
+            format: FORMAT,
+            sample_count: 4,
+        },
+    );
+
+    // Depth passes are recorded as ever.
+    let objects = objects(&gpu.device);
+    let casters = casters(&gpu.device, &objects)?;
+    let casters: Vec<&dyn ShadowCaster> = casters.iter().map(|caster| caster as _).collect();
+    let camera = Camera::new(
+        Vec3::new(1.0, 3.6, 7.0),
+        Vec3::new(0.0, 0.5, 0.0),
+        0.8,
+        SIZE,
+    );
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    sun.record(
+        &gpu.device,
+        &mut encoder,
+        &DirectionalFrame {
+            origin: DVec3::ZERO,
+            light: DirectionalLight::new(-TOWARD_SUN),
+            coverage: Coverage::Camera(camera.for_shadows()),
+            casters: &casters,
+            receivers: &[],
+        },
+    )?;
+    lamp.record(
+        &gpu.device,
+        &mut encoder,
+        &OmniFrame {
+            origin: DVec3::ZERO,
+            light: LAMP,
+            camera: Some(camera.for_shadows()),
+            casters: &casters,
+            receivers: &[],
+        },
+    )?;
+
+    let lighting = Lighting {
+        light: TOWARD_SUN.normalize().extend(0.0),
+        light_color: Vec3::new(0.50, 0.54, 0.60),
+        light_range: f32::INFINITY,
+        ambient: Vec3::splat(0.10),
+        sky: Vec3::new(0.05, 0.07, 0.10),
+    };
+    let target = gpu.target(FORMAT, SIZE, 1);
+    let view = Picture {
+        camera: &camera,
+        lighting: &lighting,
+        shadows: &group,
+        target: &target,
+    };
+    phong.draw(&gpu, &mut encoder, &view, objects.iter().map(Batch::from));
+    let pixels = gpu.read(encoder, &target)?;
+    if let Some(folder) = arguments.file.parent() {
+        picture::make_folder(folder)?;
+    }
+    picture::save(&arguments.file, &pixels, SIZE)?;
+    println!("{}", arguments.file.display());
+    Ok(())
+}
+
+/// The engine's own bind group: a sampler, then map and uniforms of the sun, then those of the lamp.
+fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let texture = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Depth,
+        view_dimension: wgpu::TextureViewDimension::D2Array,
+        multisampled: false,
+    };
+    let uniform = wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Uniform,
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering);
+    let entries: Vec<_> = (0..)
+        .zip([sampler, texture, uniform, texture, uniform])
+        .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty,
+            count: None,
+        })
+        .collect();
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("the engine's own"),
+        entries: &entries,
+    })
+}
+
+fn objects(device: &wgpu::Device) -> Vec<Object> {
+    let place = |scale: f32, place: Vec3| {
+        Mat4::from_translation(place) * Mat4::from_scale(Vec3::splat(scale))
+    };
+    let object = |mesh: &[Vertex], render_from_model, albedo: [f32; 3]| {
+        let instance = Instance {
+            render_from_model,
+            albedo: albedo.into(),
+            checker: 0.0,
+        };
+        Object::new(device, mesh, instance)
+    };
+    let grey = [0.70, 0.68, 0.64];
+    vec![
+        object(&square(Vec3::Y, 0.0), place(8.0, Vec3::ZERO), grey),
+        object(
+            &cube(),
+            place(0.7, Vec3::new(0.6, 0.7, -0.4)),
+            [0.72, 0.35, 0.28],
+        ),
+        object(
+            &cube(),
+            place(0.3, Vec3::new(-2.2, 0.3, 0.3)),
+            [0.35, 0.55, 0.35],
+        ),
+        object(
+            &sphere(32),
+            place(0.5, Vec3::new(-0.9, 0.5, 0.2)),
+            [0.32, 0.45, 0.72],
+        ),
+    ]
+}
+
+fn casters(
+    device: &wgpu::Device,
+    objects: &[Object],
+) -> Result<Vec<MeshCaster>, wgpu_shadows::CasterError> {
+    let pipeline = CasterPipeline::new(
+        device,
+        &CasterPipelineDescriptor {
+            vertex: CasterVertex::BuiltIn {
+                position: PositionAttribute::float32x3(size_of::<Vertex>() as u64),
+                model: ModelTransform::INSTANCE_MATRIX,
+            },
+            ..Default::default()
+        },
+    )?;
+    let caster = |object: &Object| {
+        MeshCaster::new(
+            device,
+            &MeshCasterDescriptor {
+                label: None,
+                pipeline: &pipeline,
+                vertices: &object.mesh.vertices,
+                indices: MeshIndices::None {
+                    vertices: 0..object.mesh.vertex_count,
+                },
+                bounds_model: object.mesh.bounds_model,
+                render_from_model: object.render_from_model,
+            },
+        )
+    };
+    objects.iter().map(caster).collect()
+}

@@ -1,0 +1,24 @@
+// The engine's own bindings and names; the library's modules stand in front of this text and take them as arguments.
+
+@group(1) @binding(0) var depth_sampler: sampler;
+@group(1) @binding(1) var sun_depths: texture_depth_2d_array;
+@group(1) @binding(2) var<uniform> sun_view: ShadowView;
+@group(1) @binding(3) var lamp_depths: texture_depth_2d_array;
+@group(1) @binding(4) var<uniform> lamp_views: array<ShadowView, 6>;
+
+fn sunlight(position: vec3<f32>, normal: vec3<f32>) -> f32 {
+    let receiver = shadow_receiver_plane(sun_view, position, normal);
+    if !receiver.inside {
+        return 1.0;
+    }
+    return shadow_filter_tent_narrow(sun_depths, depth_sampler, receiver);
+}
+
+fn lamplight(position: vec3<f32>, normal: vec3<f32>) -> f32 {
+    let face = shadow_cube_face(position - lamp_views[0].anchor);
+    let receiver = shadow_receiver_plane(lamp_views[face], position, normal);
+    if !receiver.inside {
+        return 1.0;
+    }
+    return shadow_filter_tent_narrow(lamp_depths, depth_sampler, receiver);
+}

@@ -1,0 +1,316 @@
+//! `DebugView`: a grey level is what it says, a depth or a distance; the cross unfolds as it says; what it cannot draw it
+//! refuses.
+
+use glam::{DVec3, Vec3};
+use image::RgbaImage;
+use wgpu_shadows::{
+    Aabb, Coverage, DebugPicture, DebugView, DebugViewError, DirectionalFrame, DirectionalLight,
+    DirectionalShadow, DirectionalShadowDescriptor, OmniFrame, OmniLight, OmniShadow,
+    OmniShadowDescriptor, OmniShadowPool, PoolDescriptor, PoolFrame, PoolLight, ShadowSource,
+    SpotFrame, SpotLight, SpotShadow, SpotShadowDescriptor,
+};
+
+use crate::support::ask::{record_omni, record_spot, submitted};
+use crate::support::gpu::{Gpu, gpu};
+use crate::support::picture::{COLOR, color_pass, color_target};
+use crate::support::probe::record;
+use crate::support::readback;
+use crate::support::scene::{Mesh, Scene};
+
+/// Draws into the upper left `width` by `height` pixels of a square target.
+fn picture(
+    gpu: &Gpu,
+    source: ShadowSource<'_>,
+    picture: DebugPicture,
+    [width, height]: [u32; 2],
+) -> Result<RgbaImage, DebugViewError> {
+    let view = DebugView::new(&gpu.device, COLOR)?;
+    let target = color_target(gpu, width.max(height));
+    let mut encoder = gpu.encoder();
+    let mut pass = color_pass(&mut encoder, &target);
+    pass.set_viewport(0.0, 0.0, width as f32, height as f32, 0.0, 1.0);
+    let drawn = view.draw(&gpu.device, &mut pass, source, picture);
+    drop(pass);
+    gpu.submit(encoder);
+    drawn.map(|()| readback::rgba8(gpu, &target))
+}
+
+/// A pixel is grey, opaque, and at most half a step of 8 bits (and f32's rounding of it) from `wanted`.
+fn assert_grey(image: &RgbaImage, [x, y]: [u32; 2], wanted: f64, name: &str) {
+    let [r, g, b, a] = image.get_pixel(x, y).0;
+    assert!(r == g && g == b && a == 255, "{name} at {x}, {y}");
+    let error = (f64::from(r) - wanted * 255.0).abs();
+    assert!(
+        error <= 0.51,
+        "{name} at {x}, {y}: {r}, wanted {}",
+        wanted * 255.0
+    );
+}
+
+const MAP: u32 = 48;
+
+fn sun() -> (DirectionalShadow, Vec<f32>) {
+    let gpu = gpu();
+    let descriptor = DirectionalShadowDescriptor {
+        map_size: MAP,
+        cascades: 2,
+        ..Default::default()
+    };
+    let mut shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");
+    let sphere = Mesh::sphere(Vec3::new(0.2, 1.0, 0.0), 0.9, 12);
+    let scene = Scene::new(gpu, &[Mesh::floor(0.0, 2.0), sphere]);
+    let frame = DirectionalFrame {
+        origin: DVec3::ZERO,
+        light: DirectionalLight::new(Vec3::new(0.4, -1.0, 0.2)),
+        coverage: Coverage::Bounds(Aabb::new(Vec3::splat(-2.0), Vec3::splat(2.0))),
+        casters: &scene.list(),
+        receivers: &[],
+    };
+    record(gpu, &mut shadow, &frame);
+    let depths = readback::depth_layer(gpu, shadow.texture(), 0);
+    (shadow, depths)
+}
+
+#[test]
+fn a_sun_shows_its_depth() {
+    let (shadow, depths) = sun();
+    let layer = picture(gpu(), shadow.source(), DebugPicture::Layer(0), [MAP; 2]);
+    let image = layer.expect("a layer of the map");
+    for (index, depth) in (0..).zip(&depths) {
+        let pixel = [index % MAP, index / MAP];
+        assert_grey(&image, pixel, 1.0 - f64::from(*depth), "sun");
+    }
+    let steps = depths.iter().map(|depth| (depth * 255.0) as u32);
+    assert!(steps.collect::<std::collections::BTreeSet<_>>().len() > 20);
+    // The second cascade holds nothing.
+    let empty = picture(gpu(), shadow.source(), DebugPicture::Layer(1), [MAP; 2]);
+    let empty = empty.expect("a layer of the map");
+    assert!(empty.pixels().all(|pixel| pixel.0 == [255; 4]));
+}
+
+/// A spot over a plane: each pixel shows how far along the ray through its texel the plane lies, as a share of the range.
+#[test]
+fn a_spot_shows_distances() {
+    let gpu = gpu();
+    let descriptor = SpotShadowDescriptor {
+        map_size: MAP,
+        ..Default::default()
+    };
+    let mut shadow = SpotShadow::new(&gpu.device, &descriptor).expect("a valid spot");
+    let scene = Scene::new(gpu, &[Mesh::floor(0.0, 9.0)]);
+    let (place, range) = (DVec3::new(0.3, 3.0, -0.2), 6.0);
+    let frame = SpotFrame {
+        origin: DVec3::ZERO,
+        light: SpotLight {
+            position_world: place,
+            direction: Vec3::new(0.3, -1.0, 0.2),
+            outer_angle_radians: 0.7,
+            range: range as f32,
+        },
+        camera: None,
+        casters: &scene.list(),
+        receivers: &[Aabb::new(Vec3::splat(-9.0), Vec3::splat(9.0))],
+    };
+    record_spot(gpu, &mut shadow, &frame).expect("a valid frame");
+    let layer = picture(gpu, shadow.source(), DebugPicture::Layer(0), [MAP; 2]);
+    let image = layer.expect("a layer of the map");
+    let view = shadow.views().next().expect("a view");
+    let anchor_from_clip = view.clip_from_anchor().as_dmat4().inverse();
+    let mut drawn = 0;
+    for y in 0..MAP {
+        for x in 0..MAP {
+            let ndc = |texel: u32| (f64::from(texel) + 0.5) * 2.0 / f64::from(MAP) - 1.0;
+            let near = anchor_from_clip * DVec3::new(ndc(x), -ndc(y), 1.0).extend(1.0);
+            let ray = (near.truncate() / near.w).normalize();
+            let distance = place.y / -ray.y;
+            // Where nothing lies, or what lies there is beyond the range, it is white.
+            let wanted = if ray.y < -1e-3 {
+                (distance / range).min(1.0)
+            } else {
+                1.0
+            };
+            // The floor ends nine metres out, farther than the range.
+            assert_grey(&image, [x, y], wanted, "spot");
+            drawn += u32::from(wanted < 1.0);
+        }
+    }
+    assert!(drawn > MAP * MAP / 2, "{drawn}");
+}
+
+/// Walls at six different distances.
+const WALLS: [f32; 6] = [3.0, 4.0, 2.5, 3.5, 4.5, 2.0];
+
+/// A room with the light at the origin, and in each face a small ball aside of its middle: in the direction given, and where
+/// the cross must show it, in cells of the four by three from the upper left.
+///
+/// The cross is what one sees who stands at the light and looks along -z, with the other walls folded outward: right is +x,
+/// up is +y, the ceiling's lower border is the wall's upper one, and the wall behind is outermost on the right.
+const BALLS: [(Vec3, [f32; 2]); 6] = [
+    (Vec3::new(1.0, 0.5, -0.5), [2.25, 1.25]),
+    (Vec3::new(-1.0, 0.5, -0.5), [0.75, 1.25]),
+    (Vec3::new(0.5, 1.0, -0.5), [1.75, 0.75]),
+    (Vec3::new(0.5, -1.0, -0.5), [1.75, 2.25]),
+    (Vec3::new(-0.5, 0.5, 1.0), [3.75, 1.25]),
+    (Vec3::new(0.5, 0.5, -1.0), [1.75, 1.25]),
+];
+
+/// Middles of the cells of +x, -x, +y, -y, +z, -z.
+const CELLS: [[f32; 2]; 6] = [
+    [2.5, 1.5],
+    [0.5, 1.5],
+    [1.5, 0.5],
+    [1.5, 2.5],
+    [3.5, 1.5],
+    [1.5, 1.5],
+];
+
+const RANGE: f32 = 6.0;
+const CELL: u32 = 41;
+const CROSS: [u32; 2] = [4 * CELL, 3 * CELL];
+
+fn room(gpu: &Gpu) -> Scene {
+    let low = Vec3::new(-WALLS[1], -WALLS[3], -WALLS[5]);
+    let high = Vec3::new(WALLS[0], WALLS[2], WALLS[4]);
+    let balls = BALLS.map(|(direction, _)| Mesh::sphere(direction * 1.2, 0.15, 16));
+    let meshes: Vec<_> = balls.into_iter().chain([Mesh::cuboid(low, high)]).collect();
+    Scene::new(gpu, &meshes)
+}
+
+/// Beyond the walls something receives, so that these are drawn.
+const BEYOND: [Aabb; 1] = [Aabb::new(Vec3::splat(-9.0), Vec3::splat(9.0))];
+
+const LAMP: OmniLight = OmniLight {
+    position_world: DVec3::ZERO,
+    range: RANGE,
+};
+
+fn lamp(gpu: &Gpu) -> OmniShadow {
+    let descriptor = OmniShadowDescriptor {
+        map_size: 256,
+        ..Default::default()
+    };
+    let mut shadow = OmniShadow::new(&gpu.device, &descriptor).expect("a valid lamp");
+    let room = room(gpu);
+    let frame = OmniFrame {
+        origin: DVec3::ZERO,
+        light: LAMP,
+        camera: None,
+        casters: &room.list(),
+        receivers: &BEYOND,
+    };
+    let report = record_omni(gpu, &mut shadow, &frame).expect("a valid frame");
+    assert_eq!(report.passes, 6);
+    shadow
+}
+
+fn pixel(cell: [f32; 2]) -> [u32; 2] {
+    cell.map(|place| (place * CELL as f32) as u32)
+}
+
+#[test]
+fn a_cross_shows_the_walls_of_a_room() {
+    let gpu = gpu();
+    let shadow = lamp(gpu);
+    let image = picture(gpu, shadow.source(), DebugPicture::Cross, CROSS).expect("a cube");
+    for (wall, cell) in WALLS.into_iter().zip(CELLS) {
+        // Straight ahead; the middle of an odd cell is the middle of a pixel, and half a texel from a texel's own.
+        assert_grey(&image, pixel(cell), f64::from(wall / RANGE), "wall");
+    }
+    for (direction, cell) in BALLS {
+        // A ball's front, and opposite to it in the cell the wall, farther than any ball.
+        let front = (direction * 1.2).length() - 0.15;
+        let grey = f32::from(image.get_pixel(pixel(cell)[0], pixel(cell)[1]).0[0]) / 255.0;
+        // A pixel aside of the ball's middle it is a little farther: at most a fifth of the radius.
+        let distance = grey * RANGE;
+        assert!(
+            (distance - front).abs() < 0.03 + RANGE / 255.0,
+            "{direction}: {distance}, {front}"
+        );
+        let middle = cell.map(|place| place.floor() + 0.5);
+        let opposite = [0, 1].map(|axis| 2.0 * middle[axis] - cell[axis]);
+        let [x, y] = pixel(opposite);
+        let grey = f32::from(image.get_pixel(x, y).0[0]) / 255.0;
+        assert!(grey * RANGE > 1.95, "{direction}: {}", grey * RANGE);
+    }
+    // Where the cross has no cell it is grey.
+    for cell in [[0.5, 0.5], [2.5, 0.5], [3.5, 2.5]] {
+        let [x, y] = pixel(cell);
+        assert!([127, 128].contains(&image.get_pixel(x, y).0[0]));
+    }
+}
+
+/// A pool shows each of its lights as the light alone.
+#[test]
+fn a_pool_shows_one_of_its_lights() {
+    let gpu = gpu();
+    let alone = lamp(gpu);
+    let wanted = picture(gpu, alone.source(), DebugPicture::Cross, CROSS).expect("a cube");
+    let descriptor = PoolDescriptor {
+        capacity: 3,
+        map_size: 256,
+        ..Default::default()
+    };
+    let mut pool = OmniShadowPool::new(&gpu.device, &descriptor).expect("a valid pool");
+    pool.insert().expect("a free slot");
+    let slot = pool.insert().expect("a free slot");
+    let lights = [PoolLight {
+        slot,
+        light: LAMP,
+        importance: 1.0,
+    }];
+    let room = room(gpu);
+    let frame = PoolFrame {
+        origin: DVec3::ZERO,
+        lights: &lights,
+        camera: None,
+        casters: &room.list(),
+        receivers: &BEYOND,
+        max_views: None,
+    };
+    submitted(gpu, |encoder| pool.record(&gpu.device, encoder, &frame)).expect("a valid frame");
+    let draw = |what| picture(gpu, pool.source(), what, CROSS);
+    assert!(draw(DebugPicture::PoolCross(1)).expect("a light") == wanted);
+    // A slot without a light is white all over its cells.
+    let empty = draw(DebugPicture::PoolCross(0)).expect("a slot");
+    assert!(
+        CELLS
+            .map(pixel)
+            .iter()
+            .all(|[x, y]| empty.get_pixel(*x, *y).0 == [255; 4])
+    );
+    for index in [3, 4, u32::MAX] {
+        let refused = draw(DebugPicture::PoolCross(index)).expect_err("no such slot");
+        assert!(matches!(refused, DebugViewError::Layer { layers: 18, .. }));
+    }
+}
+
+#[test]
+fn what_cannot_be_drawn_is_refused() {
+    let gpu = gpu();
+    let (shadow, _) = sun();
+    let draw = |what| picture(gpu, shadow.source(), what, [8; 2]);
+    for layer in [2, 3, u32::MAX] {
+        let refused = draw(DebugPicture::Layer(layer));
+        assert_eq!(
+            refused.err(),
+            Some(DebugViewError::Layer { layer, layers: 2 })
+        );
+    }
+    let not_a_cube = DebugViewError::NotACube { layers: 2 };
+    assert_eq!(draw(DebugPicture::Cross).err(), Some(not_a_cube.clone()));
+    assert_eq!(draw(DebugPicture::PoolCross(0)).err(), Some(not_a_cube));
+    use wgpu::TextureFormat::{
+        Bc1RgbaUnorm, Depth32Float, R32Uint, Rgba8Sint, Rgba8Snorm, Stencil8,
+    };
+    for format in [
+        Depth32Float,
+        Stencil8,
+        R32Uint,
+        Rgba8Sint,
+        Rgba8Snorm,
+        Bc1RgbaUnorm,
+    ] {
+        let refused = DebugView::new(&gpu.device, format).map(|_| ());
+        assert_eq!(refused, Err(DebugViewError::Format { format }));
+    }
+}

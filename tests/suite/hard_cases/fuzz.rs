@@ -1,0 +1,337 @@
+//! Any numbers in every constructor and every per-frame call: an answer or an error, and the device never complains.
+//!
+//! Seeds are fixed; `PROPTEST_RNG_SEED` and `PROPTEST_CASES` explore further.
+
+use std::cell::RefCell;
+
+use glam::{DVec3, Mat4, Vec3};
+use wgpu_shadows::{
+    Aabb, CascadeSplit, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor,
+    OmniShadowPool, PoolDescriptor, PoolFrame, PoolLight, ShadowCaster, ShadowSlot, SpotFrame,
+    SpotLight, SpotShadow, SpotShadowDescriptor, SpotShadowPool,
+};
+
+use proptest::{prop_assert, prop_assert_eq};
+
+use super::fuzz_values::{
+    Counts, Numbers, bias, bounds, filter, matrix, number, numbers, run, size,
+};
+use super::stage::caster;
+use crate::support::ask::{Ask, submitted};
+use crate::support::gpu::gpu;
+use crate::support::probe::Point;
+use crate::support::scene::Mesh;
+use crate::support::watched::Watched;
+
+/// Whatever a descriptor holds, the object is made or an error says why not; the device is never asked for nonsense.
+#[test]
+fn any_descriptor_is_taken_or_refused() {
+    let counts = Counts::default();
+    let descriptor = (size(), 0..11_u32, filter(), bias(), 0..3, number());
+    run(
+        300,
+        descriptor,
+        |(map_size, count, filter, bias, split, lambda)| {
+            let device = &gpu().device;
+            let split = match split {
+                0 => CascadeSplit::Uniform,
+                1 => CascadeSplit::Logarithmic,
+                _ => CascadeSplit::Practical { lambda },
+            };
+            let sun = DirectionalShadowDescriptor {
+                label: None,
+                map_size,
+                cascades: count,
+                split,
+                filter,
+                bias,
+            };
+            counts.count(&DirectionalShadow::new(device, &sun));
+            let spot = SpotShadowDescriptor {
+                label: None,
+                map_size,
+                filter,
+                bias,
+            };
+            counts.count(&SpotShadow::new(device, &spot));
+            let lamp = OmniShadowDescriptor {
+                label: None,
+                map_size,
+                filter,
+                bias,
+            };
+            counts.count(&OmniShadow::new(device, &lamp));
+            let pool = PoolDescriptor {
+                label: None,
+                capacity: if count == 10 { u32::MAX } else { count },
+                map_size,
+                filter,
+                bias,
+            };
+            counts.count(&SpotShadowPool::new(device, &pool));
+            counts.count(&OmniShadowPool::new(device, &pool));
+            Ok(())
+        },
+    );
+    counts.finish(
+        "any numbers in every light's descriptor",
+        "an object or an error, no panic, no device error",
+    );
+}
+
+/// One light of every kind, and the question to all of them.
+struct Lights {
+    sun: DirectionalShadow,
+    spot: SpotShadow,
+    lamp: OmniShadow,
+    spots: SpotShadowPool,
+    lamps: OmniShadowPool,
+    slots: [ShadowSlot; 2],
+    asks: Vec<Ask>,
+}
+
+impl Lights {
+    fn new() -> Self {
+        let gpu = gpu();
+        let device = &gpu.device;
+        let map_size = 16;
+        let pool = PoolDescriptor {
+            map_size,
+            capacity: 2,
+            ..Default::default()
+        };
+        let sun = DirectionalShadow::new(
+            device,
+            &DirectionalShadowDescriptor {
+                map_size,
+                cascades: 2,
+                ..Default::default()
+            },
+        );
+        let spot = SpotShadow::new(
+            device,
+            &SpotShadowDescriptor {
+                map_size,
+                ..Default::default()
+            },
+        );
+        let lamp = OmniShadow::new(
+            device,
+            &OmniShadowDescriptor {
+                map_size,
+                ..Default::default()
+            },
+        );
+        let (sun, spot, lamp) = (sun.expect("sun"), spot.expect("spot"), lamp.expect("lamp"));
+        let mut spots = SpotShadowPool::new(device, &pool).expect("a pool");
+        let mut lamps = OmniShadowPool::new(device, &pool).expect("a pool");
+        let slots = [spots.insert().expect("free"), lamps.insert().expect("free")];
+        let asks = vec![
+            Ask::light(gpu, sun.source()),
+            Ask::light(gpu, spot.source()),
+            Ask::light(gpu, lamp.source()),
+            Ask::slot(gpu, spots.source(), slots[0].index()),
+            Ask::slot(gpu, lamps.source(), slots[1].index()),
+        ];
+        Self {
+            sun,
+            spot,
+            lamp,
+            spots,
+            lamps,
+            slots,
+            asks,
+        }
+    }
+
+    /// Records the frame of light `kind`.
+    fn record(
+        &mut self,
+        kind: usize,
+        numbers: &Numbers,
+        casters: &[&dyn ShadowCaster],
+    ) -> Result<(), String> {
+        let gpu = gpu();
+        let device = &gpu.device;
+        let origin = numbers.origin.as_dvec3();
+        let receivers = [numbers.receiver];
+        let camera = numbers.camera;
+        let spot = SpotLight {
+            position_world: numbers.place.as_dvec3(),
+            direction: numbers.direction,
+            outer_angle_radians: numbers.angle,
+            range: numbers.range,
+        };
+        let lamp = OmniLight {
+            position_world: numbers.place.as_dvec3(),
+            range: numbers.range,
+        };
+        let result = match kind {
+            0 => {
+                let light = DirectionalLight {
+                    direction: numbers.direction,
+                    up: numbers.up,
+                };
+                let coverage = camera.map_or(Coverage::Bounds(numbers.cover), Coverage::Camera);
+                let frame = DirectionalFrame {
+                    origin,
+                    light,
+                    coverage,
+                    casters,
+                    receivers: &receivers,
+                };
+                submitted(gpu, |encoder| self.sun.record(device, encoder, &frame))
+            }
+            1 => {
+                let frame = SpotFrame {
+                    origin,
+                    light: spot,
+                    camera,
+                    casters,
+                    receivers: &receivers,
+                };
+                submitted(gpu, |encoder| self.spot.record(device, encoder, &frame))
+            }
+            2 => {
+                let frame = OmniFrame {
+                    origin,
+                    light: lamp,
+                    camera,
+                    casters,
+                    receivers: &receivers,
+                };
+                submitted(gpu, |encoder| self.lamp.record(device, encoder, &frame))
+            }
+            3 => {
+                let lights = [PoolLight {
+                    slot: self.slots[0],
+                    light: spot,
+                    importance: numbers.importance,
+                }];
+                let frame = pool_frame(numbers, origin, &lights, casters, &receivers);
+                submitted(gpu, |encoder| self.spots.record(device, encoder, &frame))
+            }
+            _ => {
+                let lights = [PoolLight {
+                    slot: self.slots[1],
+                    light: lamp,
+                    importance: numbers.importance,
+                }];
+                let frame = pool_frame(numbers, origin, &lights, casters, &receivers);
+                submitted(gpu, |encoder| self.lamps.record(device, encoder, &frame))
+            }
+        };
+        result.map(|_| ()).map_err(|error| error.to_string())
+    }
+
+    fn ask(&self, kind: usize, points: &[Point]) -> Vec<f32> {
+        self.asks[kind].points(gpu(), points)
+    }
+}
+
+fn pool_frame<'a, L>(
+    numbers: &Numbers,
+    origin: DVec3,
+    lights: &'a [PoolLight<L>],
+    casters: &'a [&'a dyn ShadowCaster],
+    receivers: &'a [Aabb],
+) -> PoolFrame<'a, L> {
+    PoolFrame {
+        origin,
+        lights,
+        camera: numbers.camera,
+        casters,
+        receivers,
+        max_views: numbers.max_views,
+    }
+}
+
+/// Whatever a frame holds, it is taken or refused; every answer is a visibility, to broken questions too; and a refused frame
+/// leaves the answers to all other questions as they were.
+#[test]
+fn any_frame_is_taken_or_refused() {
+    let lights = RefCell::new(Lights::new());
+    let counts = Counts::default();
+    let mesh = Mesh::cuboid(Vec3::new(-1.0, 1.0, -1.0), Vec3::new(1.0, 1.2, 1.0));
+    let fixed: Vec<_> = (0..32_u8)
+        .map(|index| {
+            let (x, z) = (f32::from(index % 8) - 3.7, f32::from(index / 8) - 1.6);
+            Point::new(Vec3::new(x, 0.1 * z, z), Vec3::Y)
+        })
+        .collect();
+    run(250, numbers(), |numbers| {
+        let mut lights = lights.borrow_mut();
+        let slab = caster(gpu(), &mesh, Mat4::IDENTITY);
+        let slab = Watched::with_bounds(slab, numbers.bounds);
+        let broken: Vec<_> = numbers
+            .points
+            .iter()
+            .map(|(position, normal)| Point::new(*position, *normal))
+            .collect();
+        for kind in 0..5 {
+            let before = lights.ask(kind, &fixed);
+            let result = lights.record(kind, &numbers, &[&slab]);
+            counts.count(&result);
+            let after = lights.ask(kind, &fixed);
+            if let Err(error) = &result {
+                prop_assert_eq!(&before, &after, "kind {}: {}", kind, error);
+            }
+            let mut all = after;
+            all.extend(lights.ask(kind, &broken));
+            let sound = all.iter().all(|seen| (0.0..=1.0).contains(seen));
+            prop_assert!(sound, "kind {}: {:?} after {:?}", kind, all, result);
+        }
+        Ok(())
+    });
+    counts.finish(
+        "any numbers in every light's frame",
+        "answers in 0..=1 or an error that changes nothing, no panic, no device error",
+    );
+}
+
+/// A mesh takes any matrix and any bounds, or refuses them; a refused transform leaves it where it was.
+#[test]
+fn any_mesh_is_taken_or_refused() {
+    let counts = Counts::default();
+    let mesh = Mesh::cuboid(Vec3::NEG_ONE, Vec3::ONE);
+    let fine = RefCell::new(caster(gpu(), &mesh, Mat4::IDENTITY));
+    let lights = RefCell::new(Lights::new());
+    let cover = Aabb::new(Vec3::splat(-3.0), Vec3::splat(3.0));
+    let quiet = Numbers {
+        origin: Vec3::ZERO,
+        place: Vec3::ZERO,
+        direction: Vec3::NEG_Y,
+        up: Vec3::Y,
+        range: 1.0,
+        angle: 0.5,
+        bounds: cover,
+        receiver: cover,
+        cover,
+        camera: None,
+        importance: 1.0,
+        max_views: None,
+        points: Vec::new(),
+    };
+    let point = [Point::new(Vec3::new(0.1, -1.5, 0.2), Vec3::Y)];
+    run(200, (matrix(), bounds()), |(matrix, bounds)| {
+        let mut fine = fine.borrow_mut();
+        let held = fine.render_from_model();
+        let result = fine.set_transform(&gpu().queue, matrix);
+        counts.count(&result);
+        if result.is_err() {
+            prop_assert_eq!(fine.render_from_model(), held);
+        }
+        fine.geometry_changed(bounds);
+        let mut lights = lights.borrow_mut();
+        // Bounds without end are the frame's to refuse; the answer is a visibility all the same.
+        counts.count(&lights.record(0, &quiet, &[&*fine]));
+        let seen = lights.ask(0, &point)[0];
+        prop_assert!((0.0..=1.0).contains(&seen), "{}", seen);
+        Ok(())
+    });
+    counts.finish(
+        "any numbers in a mesh's matrix and bounds",
+        "drawn or refused, no panic, no device error",
+    );
+}

@@ -1,0 +1,181 @@
+//! An engine with bindings of its own, as `examples/own_layout.rs` has them, gets what `ShadowBindings` gives, to the bit.
+
+use glam::{DVec3, Vec3};
+use wgpu_shadows::{
+    Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor, shader,
+};
+
+use crate::support::ask::{Ask, record_omni};
+use crate::support::camera::Camera;
+use crate::support::gpu::{Gpu, gpu};
+use crate::support::probe::{Point, PointShader, record};
+use crate::support::random::Random;
+use crate::support::scene::{Mesh, Scene};
+use crate::support::wgsl;
+
+const MODULES: [&str; 4] = ["bias_plane", "filter_tent_narrow", "cube_face", "normal"];
+
+/// The modules and the engine's own text behind them.
+fn composition() -> String {
+    let modules = shader::compose(&MODULES).expect("modules of the table");
+    modules + include_str!("../../examples/own_layout.wgsl")
+}
+
+/// The engine's bind group.
+fn own_group(
+    gpu: &Gpu,
+    sun: &DirectionalShadow,
+    lamp: &OmniShadow,
+) -> (wgpu::BindGroupLayout, wgpu::BindGroup) {
+    let texture = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Depth,
+        view_dimension: wgpu::TextureViewDimension::D2Array,
+        multisampled: false,
+    };
+    let uniform = wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Uniform,
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering);
+    let types = [sampler, texture, uniform, texture, uniform];
+    let entries: Vec<_> = (0..)
+        .zip(types)
+        .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty,
+            count: None,
+        })
+        .collect();
+    let layout = gpu
+        .device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("own layout"),
+            entries: &entries,
+        });
+    let sampler = gpu.device.create_sampler(&Default::default());
+    let resources = [
+        wgpu::BindingResource::Sampler(&sampler),
+        wgpu::BindingResource::TextureView(sun.texture_view()),
+        sun.uniform_buffer().as_entire_binding(),
+        wgpu::BindingResource::TextureView(lamp.texture_view()),
+        lamp.uniform_buffer().as_entire_binding(),
+    ];
+    let entries: Vec<_> = (0..)
+        .zip(resources)
+        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+        .collect();
+    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("own layout"),
+        layout: &layout,
+        entries: &entries,
+    });
+    (layout, group)
+}
+
+#[test]
+fn the_composition_declares_only_the_engines_bindings() {
+    let module = wgsl::validate(&composition()).expect("valid WGSL");
+    let mut bound: Vec<_> = module
+        .global_variables
+        .iter()
+        .filter(|(_, variable)| variable.binding.is_some())
+        .filter_map(|(_, variable)| variable.name.clone())
+        .collect();
+    bound.sort();
+    let own = [
+        "depth_sampler",
+        "lamp_depths",
+        "lamp_views",
+        "sun_depths",
+        "sun_view",
+    ];
+    assert_eq!(bound, own);
+}
+
+#[test]
+fn own_bindings_give_the_same_bits() {
+    let gpu = gpu();
+    let scene = Scene::new(
+        gpu,
+        &[
+            Mesh::floor(0.0, 6.0),
+            Mesh::cuboid(Vec3::new(-1.5, 0.0, -1.0), Vec3::new(-0.3, 1.6, 0.4)),
+            Mesh::sphere(Vec3::new(1.4, 1.0, 0.6), 0.7, 12),
+        ],
+    );
+    let list = scene.list();
+    let descriptor = DirectionalShadowDescriptor {
+        map_size: 256,
+        ..Default::default()
+    };
+    let mut sun = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");
+    let camera = Camera::modern(DVec3::new(2.0, 6.0, 8.0), DVec3::ZERO, 0.9, 1.5);
+    let frame = DirectionalFrame {
+        origin: DVec3::ZERO,
+        light: DirectionalLight::new(Vec3::new(0.6, -1.0, 0.3)),
+        coverage: Coverage::Camera(camera.view()),
+        casters: &list,
+        receivers: &[],
+    };
+    record(gpu, &mut sun, &frame);
+    let descriptor = OmniShadowDescriptor {
+        map_size: 128,
+        ..Default::default()
+    };
+    let mut lamp = OmniShadow::new(&gpu.device, &descriptor).expect("a valid lamp");
+    let frame = OmniFrame {
+        origin: DVec3::ZERO,
+        light: OmniLight {
+            position_world: DVec3::new(0.2, 2.6, 0.1),
+            range: 9.0,
+        },
+        camera: None,
+        casters: &list,
+        receivers: &[],
+    };
+    record_omni(gpu, &mut lamp, &frame).expect("a valid frame");
+
+    let mut random = Random::new(79);
+    let points: Vec<_> = (0..8000)
+        .map(|index| {
+            // Half of them on the floor, and some anywhere, outside the maps too.
+            let among = if index % 2 == 0 {
+                2
+            } else {
+                scene.triangles.len()
+            };
+            let triangle = scene.triangles[random.index(among)];
+            let place = match index % 10 {
+                9 => random.point(DVec3::splat(-15.0), DVec3::splat(15.0)),
+                _ => triangle.point(random.unit(), random.unit()),
+            };
+            Point::rounded(place, triangle.normal())
+        })
+        .collect();
+    let (layout, group) = own_group(gpu, &sun, &lamp);
+    let lights = [("sun", sun.source()), ("lamp", lamp.source())];
+    for (own, given) in [("sunlight", "shadow_sun"), ("lamplight", "shadow_lamp")] {
+        let call = |function| format!("{function}(point.position, point.normal)");
+        let own = PointShader::new(gpu, &composition(), "f32", &call(own), &layout);
+        let own: Vec<f32> = own.ask(gpu, &group, &points);
+        let wanted = Ask::new(gpu, &lights, &call(given)).points(gpu, &points);
+        let dark = wanted.iter().filter(|seen| **seen < 0.5).count();
+        let partial = wanted
+            .iter()
+            .filter(|seen| (0.01..0.99).contains(*seen))
+            .count();
+        assert!(
+            dark > 500 && partial > 50,
+            "{given}: {dark} dark, {partial} partial"
+        );
+        let differ = own
+            .iter()
+            .zip(&wanted)
+            .filter(|(own, wanted)| own.to_bits() != wanted.to_bits())
+            .count();
+        assert_eq!(differ, 0, "{given}");
+    }
+}

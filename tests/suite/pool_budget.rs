@@ -1,0 +1,189 @@
+//! Pools with a budget: the most important first, none starves, and those put off show their last map.
+
+use glam::{DVec3, Mat4, Vec3};
+use wgpu_shadows::{
+    Aabb, MeshCaster, OmniLight, OmniShadowPool, PoolFrame, PoolLight, ShadowCaster, ViewStatus,
+};
+
+use crate::suite::pool::{bits, frame, lamp, pool, record};
+use crate::support::ask::Ask;
+use crate::support::gpu::{Gpu, gpu};
+use crate::support::probe::Point;
+use crate::support::scene::{Mesh, default_pipeline};
+
+/// Lamps far from each other, each over a slab of its own that moves.
+struct Row {
+    pool: OmniShadowPool,
+    lights: Vec<PoolLight<OmniLight>>,
+    slabs: Vec<MeshCaster>,
+    asks: Vec<Ask>,
+}
+
+impl Row {
+    fn new(gpu: &Gpu, importances: &[f32]) -> Self {
+        let mut pool = pool(importances.len() as u32, 64).expect("a valid pool");
+        let pipeline = default_pipeline(gpu);
+        let (mut lights, mut slabs) = (Vec::new(), Vec::new());
+        for (index, importance) in importances.iter().enumerate() {
+            let place = Vec3::new(index as f32 * 100.0, 2.0, 0.0);
+            let slot = pool.insert().expect("a free slot");
+            let mut light = lamp(slot, place.as_dvec3(), *importance);
+            // Below the lamp and nowhere else, so that each needs one view a frame.
+            light.light.range = 10.0;
+            lights.push(light);
+            let low = place - Vec3::new(0.2, 1.1, 0.2);
+            let slab = Mesh::cuboid(low, low + Vec3::new(0.4, 0.1, 0.4));
+            slabs.push(slab.caster(gpu, &pipeline, Mat4::IDENTITY));
+        }
+        let asks = lights
+            .iter()
+            .map(|light| Ask::slot(gpu, pool.source(), light.slot.index()))
+            .collect();
+        Self {
+            pool,
+            lights,
+            slabs,
+            asks,
+        }
+    }
+
+    fn move_slabs(&mut self, gpu: &Gpu, z: f32) {
+        for slab in &mut self.slabs {
+            let shift = Mat4::from_translation(Vec3::new(0.0, 0.0, z));
+            slab.set_transform(&gpu.queue, shift)
+                .expect("a finite matrix");
+        }
+    }
+
+    /// Which lights were drawn; the others must be reported as deferred.
+    fn record(&mut self, gpu: &Gpu, max_views: Option<u32>) -> Vec<usize> {
+        let casters: Vec<&dyn ShadowCaster> = self.slabs.iter().map(|slab| slab as _).collect();
+        let floors: Vec<_> = (0..self.lights.len())
+            .map(|index| {
+                let middle = Vec3::new(index as f32 * 100.0, 0.0, 0.0);
+                Aabb::new(
+                    middle - Vec3::new(1.5, 0.1, 1.5),
+                    middle + Vec3::new(1.5, 0.0, 1.5),
+                )
+            })
+            .collect();
+        let frame = PoolFrame {
+            receivers: &floors,
+            max_views,
+            ..frame(&self.lights, &casters)
+        };
+        let report = record(gpu, &mut self.pool, &frame).expect("a valid frame");
+        let mut drawn = Vec::new();
+        for view in &report.views {
+            let light = (view.layer / 6) as usize;
+            match view.status {
+                ViewStatus::Drawn => drawn.push(light),
+                ViewStatus::Empty | ViewStatus::Kept | ViewStatus::Deferred => {}
+                status => panic!("{status:?}"),
+            }
+        }
+        assert_eq!(report.passes as usize, drawn.len());
+        drawn
+    }
+
+    /// Visibilities along a line under each lamp.
+    fn seen(&self, gpu: &Gpu, light: usize) -> Vec<f32> {
+        let points: Vec<_> = (-20..=20)
+            .map(|step| Vec3::new(light as f32 * 100.0, 0.0, step as f32 * 0.07))
+            .map(|place| Point::new(place, Vec3::Y))
+            .collect();
+        self.asks[light].points(gpu, &points)
+    }
+}
+
+#[test]
+fn the_most_important_are_refreshed_first() {
+    let gpu = gpu();
+    let mut row = Row::new(gpu, &[1.0, 8.0, 2.0, 4.0]);
+    assert_eq!(row.record(gpu, None), [0, 1, 2, 3]);
+    assert_eq!(row.record(gpu, None), []);
+    let before: Vec<_> = (0..4).map(|light| row.seen(gpu, light)).collect();
+    assert!(
+        before
+            .iter()
+            .all(|seen| seen.contains(&0.0) && seen.contains(&1.0))
+    );
+    row.move_slabs(gpu, 0.3);
+    assert_eq!(row.record(gpu, Some(2)), [1, 3]);
+    for (light, before) in before.iter().enumerate() {
+        // Those put off show their last map to the bit, though their slabs have moved; the others do not.
+        let same = bits(&row.seen(gpu, light)) == bits(before);
+        assert_eq!(same, light == 0 || light == 2, "light {light}");
+    }
+    let statuses: Vec<_> = row
+        .pool
+        .report()
+        .views
+        .iter()
+        .map(|view| view.status)
+        .collect();
+    let deferred = |light: usize| statuses[6 * light..][..6].contains(&ViewStatus::Deferred);
+    assert_eq!([0, 1, 2, 3].map(deferred), [true, false, true, false]);
+    // What nothing needs any longer takes no part in the budget: those that were put off have their turn.
+    assert_eq!(row.record(gpu, Some(1)), [2]);
+    assert_eq!(row.record(gpu, Some(1)), [0]);
+    assert_eq!(row.record(gpu, Some(1)), []);
+}
+
+/// All change all the time. The urgency of a light that waits grows by its importance each frame, and the others' start again
+/// at theirs when they are served: with importances of 1 to 8, the least waits 8 frames until it equals the first, and at
+/// most as many more as there are others before it.
+#[test]
+fn none_starves() {
+    let gpu = gpu();
+    let importances = [1.0, 8.0, 2.0, 4.0];
+    for budget in [0, 1] {
+        let mut row = Row::new(gpu, &importances);
+        let mut last = [0; 4];
+        for step in 1..=60 {
+            row.move_slabs(gpu, step as f32 * 0.005);
+            let drawn = row.record(gpu, Some(budget));
+            assert_eq!(drawn.len(), 1, "one in every frame, and no more: {drawn:?}");
+            last[drawn[0]] = step;
+            for (light, importance) in importances.iter().enumerate() {
+                let most = (15.0 / importance) as i32 + 4;
+                assert!(
+                    step - last[light] <= most,
+                    "light {light} waits since {}",
+                    last[light]
+                );
+            }
+        }
+    }
+}
+
+/// A light that moves while it is put off keeps its last map as well, wherever its views have something to draw.
+#[test]
+fn a_deferred_light_answers_from_its_last_place() {
+    let gpu = gpu();
+    let mut row = Row::new(gpu, &[1.0, 8.0]);
+    row.record(gpu, None);
+    let before = row.seen(gpu, 0);
+    assert!(before.contains(&0.0) && before.contains(&1.0));
+    for light in &mut row.lights {
+        light.light.position_world += DVec3::new(4.0, 0.5, 0.0);
+    }
+    row.move_slabs(gpu, 0.1);
+    assert_eq!(row.record(gpu, Some(1)), [1]);
+    assert_eq!(bits(&row.seen(gpu, 0)), bits(&before));
+}
+
+/// A light that has never been drawn is lit until its turn, and its report says that it waits.
+#[test]
+fn a_new_light_is_lit_until_its_turn() {
+    let gpu = gpu();
+    let mut row = Row::new(gpu, &[1.0, 8.0]);
+    assert_eq!(row.record(gpu, Some(1)), [1]);
+    assert!(row.seen(gpu, 0).iter().all(|seen| *seen == 1.0));
+    let waits = row.pool.report().views[..6]
+        .iter()
+        .any(|view| view.status == ViewStatus::Deferred);
+    assert!(waits, "{:?}", row.pool.report().views);
+    assert_eq!(row.record(gpu, Some(1)), [0]);
+    assert!(row.seen(gpu, 0).contains(&0.0));
+}
