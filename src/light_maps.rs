@@ -195,7 +195,7 @@ impl LightMaps {
             .record(encoder, &self.map, prepared, &mut views, casters);
         self.uniform_values = uniform_values;
         self.spare = std::mem::replace(&mut self.views, views);
-        self.fill_report(&layers, casters.len() as u32);
+        self.fill_report(&layers, casters);
         Ok(&self.report)
     }
 
@@ -225,7 +225,8 @@ impl LightMaps {
         uniforms
     }
 
-    fn fill_report(&mut self, layers: &[LayerBase], caster_count: u32) {
+    fn fill_report(&mut self, layers: &[LayerBase], casters: &[&dyn ShadowCaster]) {
+        let caster_count = casters.len() as u32;
         let mut by_layer = vec![None; self.map.layers() as usize];
         for draws in &self.views {
             by_layer[draws.view.layer() as usize] = Some(draws);
@@ -238,7 +239,7 @@ impl LightMaps {
                     ..ViewReport::empty(base.layer, caster_count)
                 },
                 None => ViewReport::empty(base.layer, caster_count),
-                Some(draws) => view_report(draws, &self.sampling, caster_count),
+                Some(draws) => view_report(draws, &self.sampling, casters),
             });
         self.report.views.clear();
         self.report.views.extend(reports);
@@ -257,8 +258,18 @@ impl LightMaps {
     }
 }
 
-fn view_report(draws: &ViewDraws, sampling: &Sampling, caster_count: u32) -> ViewReport {
+fn view_report(
+    draws: &ViewDraws,
+    sampling: &Sampling,
+    casters: &[&dyn ShadowCaster],
+) -> ViewReport {
+    let triangles = draws
+        .casters
+        .iter()
+        .map(|&index| u64::from(casters[index as usize].triangles()))
+        .sum();
     ViewReport {
+        triangles,
         layer: draws.view.layer(),
         status: match draws {
             ViewDraws { deferred: true, .. } => ViewStatus::Deferred,
@@ -266,7 +277,7 @@ fn view_report(draws: &ViewDraws, sampling: &Sampling, caster_count: u32) -> Vie
             _ => ViewStatus::Kept,
         },
         casters: draws.casters.len() as u32,
-        culled: caster_count - draws.casters.len() as u32,
+        culled: (casters.len() - draws.casters.len()) as u32,
         texel_size_world: draws.view.texel_size_world(),
         depth_range_world: draws.view.depth_range_world(),
         worst_gap_world: sampling.bias.worst_gap_world(sampling.filter, &draws.view),
@@ -298,7 +309,7 @@ macro_rules! light_maps_getters {
                 self.maps.view_uniforms()
             }
 
-            #[doc = concat!("The depth texture: `Depth32Float`, reversed, one layer per ", $view, ". Usable as a copy source.")]
+            #[doc = concat!("The depth texture: `Depth32Float`, reversed, one layer per ", $view, ". A copy source on all backends but OpenGL.")]
             pub fn texture(&self) -> &wgpu::Texture {
                 self.maps.texture()
             }

@@ -25,6 +25,8 @@ pub struct ViewReport {
     pub status: ViewStatus,
     /// Casters in the view: the draws of its pass, where there was one.
     pub casters: u32,
+    /// Triangles of those casters, as far as they tell ([`ShadowCaster::triangles`](crate::ShadowCaster::triangles)).
+    pub triangles: u64,
     /// Casters left out because nothing of them can fall on what the view covers.
     pub culled: u32,
     /// World size of a texel along the map's x and y; for a local light at the end of its reach, where it is largest.
@@ -43,6 +45,7 @@ impl ViewReport {
             layer,
             status: ViewStatus::Empty,
             casters: 0,
+            triangles: 0,
             culled,
             texel_size_world: Vec2::ZERO,
             depth_range_world: 0.0,
@@ -66,6 +69,11 @@ impl ShadowReport {
     /// Casters drawn, summed over the views that were drawn.
     pub fn draws(&self) -> u32 {
         self.drawn().map(|view| view.casters).sum()
+    }
+
+    /// Triangles drawn, summed over the views that were drawn, as far as casters tell.
+    pub fn triangles(&self) -> u64 {
+        self.drawn().map(|view| view.triangles).sum()
     }
 
     fn drawn(&self) -> impl Iterator<Item = &ViewReport> {

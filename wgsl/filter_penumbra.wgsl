@@ -14,10 +14,15 @@ const SHADOW_PENUMBRA_REACH: f32 = 32.0;
 const SHADOW_PENUMBRA_SEARCH_TAPS: u32 = 24u;
 const SHADOW_PENUMBRA_FILTER_TAPS: u32 = 32u;
 
+// The golden angle times `index`, within a turn: sine and cosine are exact only there.
+fn shadow_golden_angle(index: u32) -> f32 {
+    return fract(f32(index) * 0.38196601) * 6.2831853;
+}
+
 // Sample `index` of `count`, evenly over the unit disk along a golden-angle spiral (Vogel 1979).
 fn shadow_disk(index: u32, count: u32) -> vec2<f32> {
     let radius = sqrt((f32(index) + 0.5) / f32(count));
-    let angle = f32(index) * 2.399963;
+    let angle = shadow_golden_angle(index);
     return radius * vec2<f32>(cos(angle), sin(angle));
 }
 
@@ -25,7 +30,7 @@ fn shadow_disk(index: u32, count: u32) -> vec2<f32> {
 // that it stands for, up to a factor: radius t^1.5 at t = (index + 1/2) / count covers t^1.5 * t^0.5 of area per step.
 fn shadow_search_disk(index: u32, count: u32) -> vec3<f32> {
     let t = (f32(index) + 0.5) / f32(count);
-    let angle = f32(index) * 2.399963;
+    let angle = shadow_golden_angle(index);
     return vec3<f32>(t * sqrt(t) * vec2<f32>(cos(angle), sin(angle)), t * t);
 }
 

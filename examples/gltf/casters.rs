@@ -35,6 +35,10 @@ impl ShadowCaster for SceneCaster<'_> {
         self.geometry.draw(pass, self.draw);
     }
 
+    fn triangles(&self) -> u32 {
+        self.draw.indices.len() as u32 / 3
+    }
+
     fn revision(&self) -> Revision {
         Revision::new(self.draw.instance as u64, 0)
     }

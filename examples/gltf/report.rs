@@ -44,6 +44,7 @@ fn maps_report(name: &str, report: &ShadowReport, lights: &[usize]) -> Value {
                 "layer": view.layer,
                 "status": format!("{:?}", view.status),
                 "casters": view.casters,
+                "triangles": view.triangles,
                 "culled": view.culled,
                 "texel_size_world": view.texel_size_world.to_array(),
                 "depth_range_world": view.depth_range_world,

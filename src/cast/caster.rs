@@ -40,6 +40,11 @@ pub trait ShadowCaster {
     /// `view` is the depth render being recorded, for engines that choose a level of detail by texel size.
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &ShadowView);
 
+    /// Triangles that [`ShadowCaster::draw`] draws into one view, for the report's counts alone. Zero where they are not known.
+    fn triangles(&self) -> u32 {
+        0
+    }
+
     /// Identity and version of what would be drawn. The default says "always changing", so that a kept map is never stale.
     fn revision(&self) -> Revision {
         Revision::ALWAYS_CHANGING

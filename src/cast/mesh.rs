@@ -183,6 +183,14 @@ impl ShadowCaster for MeshCaster {
         }
     }
 
+    fn triangles(&self) -> u32 {
+        let corners = match &self.indices {
+            MeshIndices::None { vertices } => vertices.len(),
+            MeshIndices::Buffer { indices, .. } => indices.len(),
+        };
+        self.pipeline.triangles_of(corners as u32)
+    }
+
     fn revision(&self) -> Revision {
         Revision::new(self.id, self.version)
     }

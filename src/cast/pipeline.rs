@@ -202,6 +202,14 @@ impl CasterPipeline {
             .map_or(ModelTransform::Identity, |(_, model)| model)
     }
 
+    /// Triangles of so many corners; of a strip, without counting restarts.
+    pub(crate) fn triangles_of(&self, corners: u32) -> u32 {
+        match self.variants.topology {
+            wgpu::PrimitiveTopology::TriangleStrip => corners.saturating_sub(2),
+            _ => corners / 3,
+        }
+    }
+
     /// For strips, the format that indices must have; none where any will do.
     pub(crate) fn strip_index_format(&self) -> Option<Option<wgpu::IndexFormat>> {
         let is_strip = self.variants.topology == wgpu::PrimitiveTopology::TriangleStrip;

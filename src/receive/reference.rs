@@ -206,7 +206,7 @@ fn penumbra(map: &DepthLayer<'_>, receiver: &Receiver) -> f64 {
     hard + (soft - hard) * share
 }
 
-const GOLDEN_ANGLE: f64 = 2.399963;
+const GOLDEN_ANGLE: f64 = std::f64::consts::TAU * 0.38196601;
 
 /// Vogel's spiral of `count` places over the unit disk.
 fn disk(count: u32) -> impl Iterator<Item = DVec2> {

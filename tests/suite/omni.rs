@@ -318,7 +318,8 @@ fn casters_on_one_side_cost_one_face() {
     let scene = Scene::new(gpu, &[crate_mesh]);
     let mut lamp = Lamp::new(gpu, 64, Filter::default(), Bias::Auto);
     let report = lamp.record(gpu, &scene, DVec3::ZERO, None, &EVERYWHERE);
-    assert_eq!((report.passes, report.draws()), (1, 1));
+    // A crate has twelve triangles, and they are drawn into one face.
+    assert_eq!((report.passes, report.draws(), report.triangles()), (1, 1, 12));
     let statuses: Vec<_> = report.views.iter().map(|view| view.status).collect();
     let mut wanted = [ViewStatus::Empty; 6];
     wanted[0] = ViewStatus::Drawn;
@@ -355,7 +356,7 @@ fn faces_that_no_camera_sees_are_empty() {
     let scene = Scene::new(gpu, &crates);
     let mut lamp = Lamp::new(gpu, 128, Filter::default(), Bias::Auto);
     let all = lamp.record(gpu, &scene, DVec3::ZERO, None, &EVERYWHERE);
-    assert_eq!((all.passes, all.draws()), (6, 6));
+    assert_eq!((all.passes, all.draws(), all.triangles()), (6, 6, 72));
     let points: Vec<_> = (0..50)
         .map(|step| Point::new(Vec3::new(8.0, step as f32 * 0.04, 0.3), Vec3::NEG_X))
         .collect();
