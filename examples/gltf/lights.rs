@@ -235,17 +235,22 @@ impl SceneLights {
         uniforms
     }
 
-    /// Brings the brightest light to an irradiance of one at the middle of the scene.
+    /// Brings the brightest light to an irradiance of one at the middle of the scene, or, for a light in the middle, at a
+    /// quarter of the scene's radius.
     pub fn exposure(&self, scene: &Scene) -> f32 {
         let bounds = scene.bounds_render();
         let middle = (bounds.min + bounds.max) * 0.5;
+        let least = (bounds.max - bounds.min).length() * 0.125;
         let brightest = self
             .lights
             .iter()
             .map(|light| {
                 let share = match light.kind {
                     LightKind::Directional => 1.0,
-                    _ => 1.0 / (middle - light.position_render).length_squared().max(1e-6),
+                    _ => {
+                        let distance = (middle - light.position_render).length();
+                        distance.max(least).max(1e-6).powi(-2)
+                    }
                 };
                 light.intensity.max_element() * share
             })
