@@ -319,7 +319,10 @@ fn casters_on_one_side_cost_one_face() {
     let mut lamp = Lamp::new(gpu, 64, Filter::default(), Bias::Auto);
     let report = lamp.record(gpu, &scene, DVec3::ZERO, None, &EVERYWHERE);
     // A crate has twelve triangles, and they are drawn into one face.
-    assert_eq!((report.passes, report.draws(), report.triangles()), (1, 1, 12));
+    assert_eq!(
+        (report.passes, report.draws(), report.triangles()),
+        (1, 1, 12)
+    );
     let statuses: Vec<_> = report.views.iter().map(|view| view.status).collect();
     let mut wanted = [ViewStatus::Empty; 6];
     wanted[0] = ViewStatus::Drawn;
