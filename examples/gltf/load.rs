@@ -9,8 +9,9 @@ use gltf::khr_lights_punctual::Kind;
 use indicatif::{ProgressBar, ProgressStyle};
 use wgpu_shadows::Aabb;
 
+use crate::images;
 use crate::primitive;
-use crate::scene::{Instance, Lens, Light, LightKind, Material, Mesh, Picture, Scene, camera_view};
+use crate::scene::{Instance, Lens, Light, LightKind, Material, Mesh, Scene, camera_view};
 
 /// A node that carries something, with its transform.
 struct Placed<'a> {
@@ -24,7 +25,7 @@ pub fn load(path: &Path, size: [u32; 2]) -> Result<Scene, String> {
     let gltf::Gltf { document, blob } = gltf::Gltf::open(path).map_err(failed)?;
     let folder = path.parent();
     let buffers = gltf::import_buffers(&document, folder, blob).map_err(failed)?;
-    let images = load_images(&document, folder, &buffers).map_err(failed)?;
+    let images = images::load(&document, folder, &buffers).map_err(failed)?;
     let placed = placed_nodes(&document)?;
     let mut notes = Vec::new();
     let (meshes, ranges) = load_meshes(&document, &buffers, &mut notes);
@@ -63,71 +64,12 @@ pub fn load(path: &Path, size: [u32; 2]) -> Result<Scene, String> {
 }
 
 /// Shown only where stderr is a terminal, and only for work that takes a while.
-fn progress(what: &'static str, steps: usize) -> ProgressBar {
+pub fn progress(what: &'static str, steps: usize) -> ProgressBar {
     let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}")
         .unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::new(steps as u64)
         .with_style(style)
         .with_message(what)
-}
-
-fn load_images(
-    document: &gltf::Document,
-    folder: Option<&Path>,
-    buffers: &[gltf::buffer::Data],
-) -> gltf::Result<Vec<Picture>> {
-    let bar = progress("textures", document.images().len());
-    let images = document
-        .images()
-        .map(|image| {
-            let data = gltf::image::Data::from_source(image.source(), folder, buffers)?;
-            bar.inc(1);
-            Ok(to_rgba(&data))
-        })
-        .collect();
-    bar.finish_and_clear();
-    images
-}
-
-fn to_rgba(data: &gltf::image::Data) -> Picture {
-    use gltf::image::Format as F;
-    let (channels, bytes) = match data.format {
-        F::R8 => (1, 1),
-        F::R8G8 => (2, 1),
-        F::R8G8B8 => (3, 1),
-        F::R8G8B8A8 => (4, 1),
-        F::R16 => (1, 2),
-        F::R16G16 => (2, 2),
-        F::R16G16B16 => (3, 2),
-        F::R16G16B16A16 => (4, 2),
-        F::R32G32B32FLOAT => (3, 4),
-        F::R32G32B32A32FLOAT => (4, 4),
-    };
-    let channel = |bytes: &[u8]| match *bytes {
-        [byte] => byte,
-        [_, high] => high,
-        [a, b, c, d] => (f32::from_le_bytes([a, b, c, d]).clamp(0.0, 1.0) * 255.0).round() as u8,
-        _ => 0,
-    };
-    let rgba = data
-        .pixels
-        .chunks_exact(channels * bytes)
-        .flat_map(|pixel| {
-            let c: Vec<u8> = pixel.chunks_exact(bytes).map(channel).collect();
-            match c[..] {
-                [grey] => [grey, grey, grey, 255],
-                [grey, alpha] => [grey, grey, grey, alpha],
-                [r, g, b] => [r, g, b, 255],
-                [r, g, b, a, ..] => [r, g, b, a],
-                [] => [255; 4],
-            }
-        })
-        .collect();
-    Picture {
-        width: data.width,
-        height: data.height,
-        rgba,
-    }
 }
 
 /// The nodes of the default scene, or of all scenes where none is the default.

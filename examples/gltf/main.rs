@@ -7,6 +7,7 @@
 //! ```text
 //! options.rs     the command line
 //! load.rs        file to triangles, textures, lights and camera
+//! images.rs      its textures, decoded
 //! primitive.rs   one glTF primitive to a triangle list
 //! scene.rs       what a scene is once it is loaded
 //! device.rs      adapter, device, read-back
@@ -21,6 +22,7 @@
 mod casters;
 mod device;
 mod geometry;
+mod images;
 mod lights;
 mod load;
 mod measure;

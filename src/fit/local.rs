@@ -63,7 +63,7 @@ struct Extent {
 }
 
 impl LocalFit {
-    /// The windows for this frame; `culled` is filled with the indices of the casters of each view.
+    /// The windows for this frame; `drawn` is filled with the indices of the casters of each view.
     pub fn fit(&self, input: &LocalInput<'_>, drawn: &mut [Vec<u32>]) -> Self {
         let light = input.position_world - input.origin;
         let reach = reach(input, light);
@@ -255,8 +255,8 @@ fn can_shadow(caster: &Aabb, visible: &(DVec3, DVec3), light: DVec3) -> bool {
         })
 }
 
-/// Four ulps of f32 at the light's render coordinates, as a tangent at the nearest distance that counts, but no coarser than
-/// 1/65536: close to the light texels may be finer than positions, but at its reach they are not.
+/// Finest texel, as a tangent: four ulps of f32 at the light's render coordinates seen from the end of its reach, and at least
+/// four ulps of one, the tangent at a view's border. Close to the light texels may be finer than positions; at its reach not.
 fn texel_floor(light: DVec3, nearest: f64) -> f64 {
     let reach = nearest / NEAREST_SHARE;
     4.0 * f64::from(f32::EPSILON) * (light.abs().max_element() / reach).max(1.0)
