@@ -125,10 +125,24 @@ pub(crate) fn bias(field: &'static str, bias: Bias) -> Result<(), ShadowError> {
     )
 }
 
-pub(crate) fn split(field: &'static str, split: CascadeSplit) -> Result<(), ShadowError> {
+pub(crate) fn split(
+    field: &'static str,
+    split: CascadeSplit,
+    cascades: u32,
+) -> Result<(), ShadowError> {
     let lambda = match split {
         CascadeSplit::Practical { lambda } => lambda,
         CascadeSplit::Uniform | CascadeSplit::Logarithmic => 1.0,
+        CascadeSplit::Explicit { ends } => {
+            let ends = &ends[..cascades as usize - 1];
+            let finite = ends.iter().all(|end| end.is_finite());
+            return in_range(
+                field,
+                "of finite ends that grow",
+                finite && ends.is_sorted_by(|before, after| before < after),
+                format_args!("{ends:?}"),
+            );
+        }
     };
     in_range(
         field,

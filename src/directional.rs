@@ -5,12 +5,14 @@ use glam::{DVec3, Vec3};
 use crate::cast::{ShadowCaster, ViewDraws};
 use crate::check;
 use crate::fit::{
-    DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, MAX_CASCADES, Region,
+    CameraFrustum, DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, MAX_CASCADES, Region,
 };
 use crate::light_maps::{LayerBase, LightMaps, LightMapsDescriptor, MapsFrame, light_maps_getters};
 use crate::receive::{Sampling, Selection};
 use crate::report::ShadowReport;
-use crate::{Aabb, Bias, CameraView, CascadeSplit, Filter, ShadowError, ShadowView};
+use crate::{
+    Aabb, Bias, CameraView, CascadeSplit, DepthFormat, Filter, ShadowError, ShadowView, Stability,
+};
 
 /// What a [`DirectionalShadow`] is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +30,14 @@ pub struct DirectionalShadowDescriptor<'a> {
     pub filter: Filter,
     /// How receivers are kept from shadowing themselves.
     pub bias: Bias,
+    /// Share of a cascade's width, 0..=0.5, over which it gives way to the next toward its border. Default 0: a cascade ends
+    /// where its map ends, and the edges of shadows widen there at once. A tenth hides that; inside it two maps are looked up.
+    pub blend: f32,
+    /// What may change the extent of a cascade.
+    pub stability: Stability,
+    /// How the maps store depths. `Unorm16` halves their memory; casters need pipelines for it
+    /// ([`CasterPipelineDescriptor::depth_formats`](crate::CasterPipelineDescriptor::depth_formats)).
+    pub depth_format: DepthFormat,
 }
 
 impl Default for DirectionalShadowDescriptor<'_> {
@@ -39,6 +49,9 @@ impl Default for DirectionalShadowDescriptor<'_> {
             split: CascadeSplit::Logarithmic,
             filter: Filter::default(),
             bias: Bias::Auto,
+            blend: 0.0,
+            stability: Stability::Rungs,
+            depth_format: DepthFormat::Float32,
         }
     }
 }
@@ -53,6 +66,9 @@ impl DirectionalShadowDescriptor<'_> {
         split: CascadeSplit::Logarithmic,
         filter: Filter::Bilinear { sharpness: 1.0 },
         bias: Bias::Auto,
+        blend: 0.0,
+        stability: Stability::Rungs,
+        depth_format: DepthFormat::Float32,
     };
 
     /// Nine gathers a lookup and four times the default's texels, for two thirds of the default's error. Measured, as are the
@@ -134,7 +150,17 @@ impl DirectionalShadow {
             (1..=MAX_CASCADES as u32).contains(&descriptor.cascades),
             descriptor.cascades,
         )?;
-        check::split("DirectionalShadowDescriptor::split", descriptor.split)?;
+        check::split(
+            "DirectionalShadowDescriptor::split",
+            descriptor.split,
+            descriptor.cascades,
+        )?;
+        check::in_range(
+            "DirectionalShadowDescriptor::blend",
+            "in 0..=0.5",
+            (0.0..=0.5).contains(&descriptor.blend),
+            descriptor.blend,
+        )?;
         check::planar_filter("DirectionalShadowDescriptor::filter", descriptor.filter)?;
         check::in_range(
             "DirectionalShadowDescriptor::filter",
@@ -146,6 +172,8 @@ impl DirectionalShadow {
         let sampling = Sampling {
             filter: descriptor.filter,
             bias: descriptor.bias,
+            depth_format: descriptor.depth_format,
+            blend: descriptor.blend,
         };
         let maps = LightMaps::new(
             device,
@@ -167,6 +195,7 @@ impl DirectionalShadow {
                 margin_texels: sampling.margin_texels(),
                 cascades: descriptor.cascades as usize,
                 split: descriptor.split,
+                stability: descriptor.stability,
             },
             fit: DirectionalFit::default(),
             bounds: Vec::new(),
@@ -189,16 +218,16 @@ impl DirectionalShadow {
         frame: &DirectionalFrame<'_>,
     ) -> Result<&ShadowReport, ShadowError> {
         let axes = check_light(frame)?;
+        let frustum;
         let region = match frame.coverage {
             Coverage::Bounds(bounds) => {
                 check::bounds("DirectionalFrame::coverage", 0, &bounds)?;
                 Region::Bounds(bounds)
             }
-            Coverage::Camera(camera) => Region::Camera(Box::new(camera.frustum(
-                "DirectionalFrame::coverage.view_from_render",
-                "DirectionalFrame::coverage.clip_from_view",
-                "DirectionalFrame::coverage.max_distance",
-            )?)),
+            Coverage::Camera(camera) => {
+                frustum = self.frustum(&camera)?;
+                Region::Camera(&frustum)
+            }
         };
         check::caster_bounds("DirectionalFrame::casters", frame.casters, &mut self.bounds)?;
         check::receiver_bounds("DirectionalFrame::receivers", frame.receivers)?;
@@ -211,17 +240,35 @@ impl DirectionalShadow {
         };
         let fit = self.fit.fit(&input, &self.limits, &mut self.scratch);
         let views = self.cull(&fit, &axes, frame.origin)?;
+        let layers: [_; MAX_CASCADES] =
+            std::array::from_fn(|layer| LayerBase::directional(layer as u32));
         let maps_frame = MapsFrame {
             views,
-            layers: (0..self.limits.cascades as u32)
-                .map(LayerBase::directional)
-                .collect(),
+            layers: &layers[..self.limits.cascades],
             viewer_render: None,
             casters: frame.casters,
+            casters_field: "DirectionalFrame::casters",
         };
         let report = self.maps.record(device, encoder, maps_frame)?;
         self.fit = fit;
         Ok(report)
+    }
+
+    fn frustum(&self, camera: &CameraView) -> Result<CameraFrustum, ShadowError> {
+        const DISTANCE: &str = "DirectionalFrame::coverage.max_distance";
+        let frustum = camera.frustum(
+            "DirectionalFrame::coverage.view_from_render",
+            "DirectionalFrame::coverage.clip_from_view",
+            DISTANCE,
+        )?;
+        let (near, far) = frustum.depth_range();
+        check::in_range(
+            DISTANCE,
+            "finite under Stability::Rotation, where the projection has no far plane",
+            self.limits.stability == Stability::Rungs || (near.is_finite() && far.is_finite()),
+            camera.max_distance,
+        )?;
+        Ok(frustum)
     }
 
     /// The cascades that something casts into, with the casters of each.
@@ -232,7 +279,7 @@ impl DirectionalShadow {
         origin: DVec3,
     ) -> Result<Vec<ViewDraws>, ShadowError> {
         let windows = &fit.windows[..self.limits.cascades];
-        let mut views = Vec::with_capacity(windows.len());
+        let mut views = self.maps.spare_views();
         for (layer, window) in windows.iter().enumerate() {
             let Some(window) = window else { continue };
             let mut casters = self.maps.spare_list();

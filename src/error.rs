@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::DepthFormat;
+
 /// What a shadow light refuses at construction or at its per-frame call.
 ///
 /// Whatever the call, an error means that nothing was recorded and that the object keeps its last good state.
@@ -80,6 +82,16 @@ pub enum ShadowError {
         /// Slots of the pool.
         capacity: u32,
     },
+    /// A caster whose pipeline was not made for the format of the map that it is to be drawn into.
+    #[error("{field}[{index}]: CasterPipelineDescriptor::depth_formats must name {format:?}")]
+    CasterFormat {
+        /// Path of the list.
+        field: &'static str,
+        /// Position in the list.
+        index: usize,
+        /// The map's format.
+        format: DepthFormat,
+    },
     /// A slot that was given back, or that belongs to another pool.
     #[error(
         "{field} must be a slot that this pool has given out and not taken back, got slot {index}"
@@ -142,6 +154,9 @@ pub enum CasterError {
         /// Stride of its buffer.
         array_stride: u64,
     },
+    /// A pipeline for no map at all.
+    #[error("CasterPipelineDescriptor::depth_formats must not be empty")]
+    NoDepthFormat,
     /// The strip index format goes with strip topologies and with no others.
     #[error(
         "CasterPipelineDescriptor::strip_index_format goes with strip topologies only, got {topology:?}"

@@ -58,7 +58,7 @@ mod spot;
 
 pub use aabb::Aabb;
 pub use cast::{
-    CasterPipeline, CasterPipelineDescriptor, CasterVertex, DEPTH_FORMAT, MeshCaster,
+    CasterPipeline, CasterPipelineDescriptor, CasterVertex, DepthFormat, MeshCaster,
     MeshCasterDescriptor, MeshIndices, ModelTransform, PositionAttribute, Revision, ShadowCaster,
 };
 pub use debug_view::{DebugPicture, DebugView};
@@ -66,7 +66,7 @@ pub use directional::{
     Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
 };
 pub use error::{BindingsError, CasterError, DebugViewError, ShadowError};
-pub use fit::{CameraView, CascadeSplit, ShadowView};
+pub use fit::{CameraView, CascadeSplit, ShadowView, Stability};
 pub use omni::{OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor};
 pub use pool::{OmniShadowPool, PoolDescriptor, PoolFrame, PoolLight, ShadowSlot, SpotShadowPool};
 pub use receive::{

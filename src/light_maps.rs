@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::cast::{DepthMap, Recorder, ShadowCaster, UploadBuffer, ViewDraws};
+use crate::cast::{DepthMap, Plan, Recorder, ShadowCaster, UploadBuffer, ViewDraws};
 use crate::receive::{
     Receiver, Sampling, Selection, ShadowSource, ShadowViewUniform, empty_view_uniform,
     endless_range, view_uniform,
@@ -23,8 +23,15 @@ pub(crate) struct LightMaps {
     views: Vec<ViewDraws>,
     uniform_values: Vec<ShadowViewUniform>,
     report: ShadowReport,
-    /// Views of the frame before last, for their lists' memory.
-    spare: Vec<ViewDraws>,
+    memory: Memory,
+}
+
+/// Lists that go from frame to frame for their memory alone.
+#[derive(Debug, Default)]
+struct Memory {
+    casters: Vec<Vec<u32>>,
+    views: Vec<ViewDraws>,
+    uniforms: Vec<ShadowViewUniform>,
 }
 
 /// What a light's maps are made of.
@@ -67,12 +74,14 @@ impl LayerBase {
 /// What a frame brings to the maps.
 pub(crate) struct MapsFrame<'a> {
     /// The layers of this frame's lights; all others are lit and not reported.
-    pub layers: Vec<LayerBase>,
-    /// The views that something casts into; the other layers are lit.
+    pub layers: &'a [LayerBase],
+    /// The views that something casts into, in the order of `layers`; the other layers are lit.
     pub views: Vec<ViewDraws>,
     /// The camera, if there is one.
     pub viewer_render: Option<Vec3>,
     pub casters: &'a [&'a dyn ShadowCaster],
+    /// Path of the casters in the caller's frame.
+    pub casters_field: &'static str,
 }
 
 impl LightMaps {
@@ -87,6 +96,7 @@ impl LightMaps {
             descriptor.size_field,
             descriptor.map_size,
             layers,
+            descriptor.sampling.depth_format,
         )?;
         let report = ShadowReport {
             bytes_held: map.bytes(),
@@ -107,7 +117,7 @@ impl LightMaps {
             views: Vec::new(),
             uniform_values: vec![empty_view_uniform(0, Vec3::ZERO); layers as usize],
             report,
-            spare: Vec::new(),
+            memory: Memory::default(),
         })
     }
 
@@ -165,9 +175,19 @@ impl LightMaps {
 
     /// An empty list of caster indices, with the memory of an earlier frame's.
     pub fn spare_list(&mut self) -> Vec<u32> {
-        let mut list = self.spare.pop().map(|d| d.casters).unwrap_or_default();
+        let mut list = self.memory.casters.pop().unwrap_or_default();
         list.clear();
         list
+    }
+
+    /// Takes a list back that no view needed.
+    pub fn return_list(&mut self, list: Vec<u32>) {
+        self.memory.casters.push(list);
+    }
+
+    /// An empty list of views, with the memory of an earlier frame's.
+    pub fn spare_views(&mut self) -> Vec<ViewDraws> {
+        std::mem::take(&mut self.memory.views)
     }
 
     /// Uploads and records a frame. On an error nothing has been recorded and nothing has changed.
@@ -182,33 +202,40 @@ impl LightMaps {
             mut views,
             viewer_render,
             casters,
+            casters_field,
         } = frame;
-        let uniform_values = self.uniforms_of(&layers, &views, viewer_render);
+        let uniform_values = self.uniforms_of(layers, &views, viewer_render);
         let upload = self
             .uniforms
             .prepare(device, bytemuck::cast_slice(&uniform_values))?;
-        let prepared = self.recorder.prepare(device, &views)?;
+        let prepared =
+            self.recorder
+                .prepare(device, &self.map, &mut views, casters, casters_field)?;
         // Nothing fails from here on.
         self.uniforms.commit(encoder, upload);
         self.report.passes = self
             .recorder
             .record(encoder, &self.map, prepared, &mut views, casters);
-        self.uniform_values = uniform_values;
-        self.spare = std::mem::replace(&mut self.views, views);
-        self.fill_report(&layers, casters);
+        self.memory.uniforms = std::mem::replace(&mut self.uniform_values, uniform_values);
+        let mut old_views = std::mem::replace(&mut self.views, views);
+        let lists = old_views.drain(..).map(|draws| draws.casters);
+        self.memory.casters.extend(lists);
+        self.memory.views = old_views;
+        self.fill_report(layers, casters);
         Ok(&self.report)
     }
 
     /// One uniform per layer of the texture.
     fn uniforms_of(
-        &self,
+        &mut self,
         layers: &[LayerBase],
         views: &[ViewDraws],
         viewer_render: Option<Vec3>,
     ) -> Vec<ShadowViewUniform> {
-        let mut uniforms: Vec<_> = (0..self.map.layers())
-            .map(|layer| empty_view_uniform(layer, Vec3::ZERO))
-            .collect();
+        let mut uniforms = std::mem::take(&mut self.memory.uniforms);
+        uniforms.clear();
+        let layer_count = self.map.layers();
+        uniforms.extend((0..layer_count).map(|layer| empty_view_uniform(layer, Vec3::ZERO)));
         for base in layers {
             uniforms[base.layer as usize] = ShadowViewUniform {
                 range: endless_range(base.reach_world),
@@ -227,20 +254,18 @@ impl LightMaps {
 
     fn fill_report(&mut self, layers: &[LayerBase], casters: &[&dyn ShadowCaster]) {
         let caster_count = casters.len() as u32;
-        let mut by_layer = vec![None; self.map.layers() as usize];
-        for draws in &self.views {
-            by_layer[draws.view.layer() as usize] = Some(draws);
-        }
-        let reports = layers
-            .iter()
-            .map(|base| match by_layer[base.layer as usize] {
+        let mut views = self.views.iter().peekable();
+        let reports = layers.iter().map(|base| {
+            match views.next_if(|draws| draws.view.layer() == base.layer) {
                 None if base.deferred => ViewReport {
                     status: ViewStatus::Deferred,
                     ..ViewReport::empty(base.layer, caster_count)
                 },
                 None => ViewReport::empty(base.layer, caster_count),
                 Some(draws) => view_report(draws, &self.sampling, casters),
-            });
+            }
+        });
+        self.report.bytes_held = self.map.bytes() + self.recorder.bytes();
         self.report.views.clear();
         self.report.views.extend(reports);
     }
@@ -263,24 +288,27 @@ fn view_report(
     sampling: &Sampling,
     casters: &[&dyn ShadowCaster],
 ) -> ViewReport {
-    let triangles = draws
+    let triangles: u64 = draws
         .casters
         .iter()
         .map(|&index| u64::from(casters[index as usize].triangles()))
         .sum();
     ViewReport {
-        triangles,
+        triangles: triangles - draws.copied_triangles,
         layer: draws.view.layer(),
         status: match draws {
             ViewDraws { deferred: true, .. } => ViewStatus::Deferred,
-            ViewDraws { drawn: true, .. } => ViewStatus::Drawn,
-            _ => ViewStatus::Kept,
+            ViewDraws {
+                plan: Plan::Keep, ..
+            } => ViewStatus::Kept,
+            _ => ViewStatus::Drawn,
         },
         casters: draws.casters.len() as u32,
+        copied: draws.copied,
         culled: (casters.len() - draws.casters.len()) as u32,
         texel_size_world: draws.view.texel_size_world(),
         depth_range_world: draws.view.depth_range_world(),
-        worst_gap_world: sampling.bias.worst_gap_world(sampling.filter, &draws.view),
+        worst_gap_world: sampling.worst_gap_world(&draws.view),
     }
 }
 

@@ -14,6 +14,9 @@ use crate::{Aabb, CameraView, ShadowError, ShadowReport, ShadowView};
 pub(crate) struct LocalLights {
     slots: Vec<SlotState>,
     bounds: Vec<Aabb>,
+    /// Empty between frames; kept for their memory.
+    candidates: Vec<Candidate>,
+    layers: Vec<LayerBase>,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -65,9 +68,10 @@ pub(crate) struct LocalFields {
 }
 
 /// A light's new fit and what it would draw.
+#[derive(Debug)]
 struct Candidate {
     fit: LocalFit,
-    views: Vec<ViewDraws>,
+    views: [Option<ViewDraws>; MAX_LOCAL_VIEWS],
     /// Views that need a pass.
     needed: u32,
     refreshed: bool,
@@ -79,6 +83,8 @@ impl LocalLights {
         Self {
             slots: vec![SlotState::default(); capacity as usize],
             bounds: Vec::new(),
+            candidates: Vec::new(),
+            layers: Vec::new(),
         }
     }
 
@@ -109,14 +115,16 @@ impl LocalLights {
         check::caster_bounds(fields.casters, frame.casters, &mut self.bounds)?;
         check::receiver_bounds(fields.receivers, frame.receivers)?;
 
-        let mut candidates = frame
-            .lights
-            .iter()
-            .map(|light| self.candidate(maps, frame, light, camera.as_ref()))
-            .collect::<Result<Vec<_>, _>>()?;
+        let mut candidates = std::mem::take(&mut self.candidates);
+        candidates.clear();
+        for light in frame.lights {
+            candidates.push(self.candidate(maps, frame, light, camera.as_ref())?);
+        }
         self.choose(frame, &mut candidates);
 
-        let (mut layers, mut views) = (Vec::new(), Vec::new());
+        let mut layers = std::mem::take(&mut self.layers);
+        layers.clear();
+        let mut views = maps.spare_views();
         for (light, candidate) in frame.lights.iter().zip(&mut candidates) {
             let first_layer = light.slot * light.view_count;
             let state = &self.slots[light.slot as usize];
@@ -133,7 +141,7 @@ impl LocalLights {
                 deferred: !candidate.refreshed,
             }));
             if candidate.refreshed {
-                views.append(&mut candidate.views);
+                views.extend(candidate.views.iter_mut().filter_map(Option::take));
             } else if state.has_map {
                 let held = maps.views_in(first_layer..first_layer + light.view_count);
                 views.extend(held.map(|draws| ViewDraws {
@@ -143,13 +151,15 @@ impl LocalLights {
             }
         }
         let maps_frame = MapsFrame {
-            layers,
+            layers: &layers,
             views,
             viewer_render: camera.as_ref().map(CameraFrustum::eye_render),
             casters: frame.casters,
+            casters_field: fields.casters,
         };
         let report = maps.record(device, encoder, maps_frame)?;
-        for (light, candidate) in frame.lights.iter().zip(candidates) {
+        self.layers = layers;
+        for (light, candidate) in frame.lights.iter().zip(candidates.drain(..)) {
             let state = &mut self.slots[light.slot as usize];
             if candidate.refreshed {
                 *state = SlotState {
@@ -162,6 +172,7 @@ impl LocalLights {
                 state.waited = state.waited.saturating_add(1);
             }
         }
+        self.candidates = candidates;
         Ok(report)
     }
 
@@ -191,9 +202,11 @@ impl LocalLights {
         };
         let mut drawn: [Vec<u32>; MAX_LOCAL_VIEWS] = std::array::from_fn(|_| maps.spare_list());
         let fit = self.slots[light.slot as usize].fit.fit(&input, &mut drawn);
-        let mut views = Vec::with_capacity(axes.len());
-        for ((index, axes), casters) in axes.iter().enumerate().zip(drawn) {
-            let Some(window) = &fit.windows[index] else {
+        let mut views = [const { None }; MAX_LOCAL_VIEWS];
+        let mut needed = 0;
+        for (index, casters) in drawn.into_iter().enumerate() {
+            let (Some(axes), Some(window)) = (axes.get(index), &fit.windows[index]) else {
+                maps.return_list(casters);
                 continue;
             };
             let view = ShadowView::perspective(
@@ -205,13 +218,12 @@ impl LocalLights {
                 frame.origin,
                 light.slot * light.view_count + index as u32,
             );
-            views.push(ViewDraws::new(view.checked()?, casters));
+            let draws = ViewDraws::new(view.checked()?, casters);
+            needed += u32::from(maps.needs(&draws, frame.casters));
+            views[index] = Some(draws);
         }
-        let needed = views
-            .iter()
-            .filter(|draws| maps.needs(draws, frame.casters));
         Ok(Candidate {
-            needed: needed.count() as u32,
+            needed,
             fit,
             views,
             refreshed: true,

@@ -98,10 +98,7 @@ impl OmniShadow {
                 size_field: "OmniShadowDescriptor::map_size",
                 map_size: descriptor.map_size,
                 layers: 6,
-                sampling: Sampling {
-                    filter: descriptor.filter,
-                    bias: descriptor.bias,
-                },
+                sampling: Sampling::new(descriptor.filter, descriptor.bias),
                 selection: Selection::CubeFace,
                 views_per_light: 6,
                 indexed: false,

@@ -225,10 +225,7 @@ macro_rules! pool {
                         size_field: "PoolDescriptor::map_size",
                         map_size: descriptor.map_size,
                         layers: descriptor.capacity * $views,
-                        sampling: Sampling {
-                            filter: descriptor.filter,
-                            bias: descriptor.bias,
-                        },
+                        sampling: Sampling::new(descriptor.filter, descriptor.bias),
                         selection: $selection,
                         views_per_light: $views,
                         indexed: true,

@@ -23,9 +23,12 @@ pub struct ViewReport {
     pub layer: u32,
     /// Drawn, kept or empty.
     pub status: ViewStatus,
-    /// Casters in the view: the draws of its pass, where there was one.
+    /// Casters in the view: the draws of its pass, where there was one, and what was copied.
     pub casters: u32,
-    /// Triangles of those casters, as far as they tell ([`ShadowCaster::triangles`](crate::ShadowCaster::triangles)).
+    /// Casters of these that were not drawn: they stood still for some frames, and the layer that is kept of them was copied
+    /// under the others.
+    pub copied: u32,
+    /// Triangles of those casters that were not copied, as far as they tell ([`ShadowCaster::triangles`](crate::ShadowCaster::triangles)).
     pub triangles: u64,
     /// Casters left out because nothing of them can fall on what the view covers.
     pub culled: u32,
@@ -45,6 +48,7 @@ impl ViewReport {
             layer,
             status: ViewStatus::Empty,
             casters: 0,
+            copied: 0,
             triangles: 0,
             culled,
             texel_size_world: Vec2::ZERO,
@@ -59,16 +63,16 @@ impl ViewReport {
 pub struct ShadowReport {
     /// One entry per view, in the order of layers.
     pub views: Vec<ViewReport>,
-    /// Depth passes recorded: one per drawn view.
+    /// Depth passes recorded: one per drawn view, two where what stands still was drawn into a layer of its own first.
     pub passes: u32,
-    /// Device memory of the depth texture.
+    /// Device memory of the depth texture and of the layers that are kept of what stands still.
     pub bytes_held: u64,
 }
 
 impl ShadowReport {
     /// Casters drawn, summed over the views that were drawn.
     pub fn draws(&self) -> u32 {
-        self.drawn().map(|view| view.casters).sum()
+        self.drawn().map(|view| view.casters - view.copied).sum()
     }
 
     /// Triangles drawn, summed over the views that were drawn, as far as casters tell.

@@ -108,10 +108,7 @@ impl SpotShadow {
                 size_field: "SpotShadowDescriptor::map_size",
                 map_size: descriptor.map_size,
                 layers: 1,
-                sampling: Sampling {
-                    filter: descriptor.filter,
-                    bias: descriptor.bias,
-                },
+                sampling: Sampling::new(descriptor.filter, descriptor.bias),
                 selection: Selection::FirstInside,
                 views_per_light: 1,
                 indexed: false,

@@ -43,7 +43,9 @@ struct ShadowView {
     viewer: vec4<f32>,
     // Texels along x and y over which a light with size spreads a penumbra, per difference of ndc depth.
     penumbra: vec2<f32>,
-    padding: vec2<f32>,
+    // Texels from the border within which a cascade gives way to the next.
+    fade_texels: f32,
+    padding: f32,
 }
 
 struct ShadowReceiver {
@@ -72,6 +74,15 @@ fn shadow_view_holds(view: ShadowView, position: vec3<f32>) -> bool {
     let reached = distance_squared <= view.range * view.range
         && -dot(relative, view.light.xyz) >= view.cone_cosine * sqrt(distance_squared);
     return within && reached && place.w > 0.0 && place.z >= 0.0;
+}
+
+// Weight of a cascade at a place that it holds, where cascades blend: one, and less in the last texels before its border. Never
+// zero, so that a place in one cascade alone has a weighted mean.
+fn shadow_view_weight(view: ShadowView, position: vec3<f32>) -> f32 {
+    let place = view.texel_from_anchor * vec4<f32>(position - view.anchor, 1.0);
+    let texel = place.xy / place.w;
+    let from_border = min(texel - view.inner.xy, view.inner.zw - texel);
+    return clamp(min(from_border.x, from_border.y) / view.fade_texels, 1.0 / 4096.0, 1.0);
 }
 
 // The receiver of a place in render space that the bias has moved to `moved`, relative to the anchor, with `depth_offset`

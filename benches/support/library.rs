@@ -143,6 +143,7 @@ fn create_shadow(
                 split: CascadeSplit::Logarithmic,
                 filter,
                 bias,
+                ..DirectionalShadowDescriptor::default()
             };
             Shadow::Sun(Box::new(DirectionalShadow::new(device, &descriptor)?))
         }

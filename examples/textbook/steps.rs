@@ -48,6 +48,7 @@ const fn textbook(file: &'static str, sentence: &'static str, constant: f32, slo
             split: CascadeSplit::Logarithmic,
             filter: Filter::Nearest,
             bias: Bias::Manual { constant, slope },
+            ..DirectionalShadowDescriptor::CHEAP
         },
         cull: None,
         region: MapRegion::FixedBox,

@@ -1,12 +1,13 @@
 //! The depth texture that a light owns: one layer per view.
 
 use crate::ShadowError;
-use crate::cast::{DEPTH_FORMAT, DeviceRefusal, capture_device_errors};
+use crate::cast::{DepthFormat, DeviceRefusal, capture_device_errors};
 
 /// A layered depth texture, with one attachment per layer and one view of them all.
 #[derive(Debug)]
 pub(crate) struct DepthMap {
     layers: u32,
+    format: DepthFormat,
     texture: wgpu::Texture,
     array_view: wgpu::TextureView,
     layer_views: Vec<wgpu::TextureView>,
@@ -20,6 +21,7 @@ impl DepthMap {
         field: &'static str,
         size: u32,
         layers: u32,
+        format: DepthFormat,
     ) -> Result<Self, ShadowError> {
         let limits = device.limits();
         if size == 0 {
@@ -50,10 +52,11 @@ impl DepthMap {
                 mip_level_count: 1,
                 sample_count: 1,
                 dimension: wgpu::TextureDimension::D2,
-                format: DEPTH_FORMAT,
+                format: format.texture_format(),
                 usage: wgpu::TextureUsages::RENDER_ATTACHMENT
                     | wgpu::TextureUsages::TEXTURE_BINDING
-                    | wgpu::TextureUsages::COPY_SRC,
+                    | wgpu::TextureUsages::COPY_SRC
+                    | wgpu::TextureUsages::COPY_DST,
                 view_formats: &[],
             });
             let array_view = texture.create_view(&wgpu::TextureViewDescriptor {
@@ -74,6 +77,7 @@ impl DepthMap {
                 .collect();
             Self {
                 layers,
+                format,
                 texture,
                 array_view,
                 layer_views,
@@ -82,7 +86,7 @@ impl DepthMap {
         capture_device_errors(device, create).map_err(|refusal| match refusal {
             DeviceRefusal::OutOfMemory => ShadowError::OutOfMemory {
                 field,
-                bytes: bytes(size, allocated),
+                bytes: bytes(size, allocated, format),
             },
             DeviceRefusal::Refused(message) => ShadowError::Device {
                 object: "the depth map",
@@ -103,8 +107,34 @@ impl DepthMap {
         &self.layer_views[layer as usize]
     }
 
+    /// One layer, as the source or target of a copy of [`DepthMap::layer_extent`].
+    pub fn layer_copy(&self, layer: u32) -> wgpu::TexelCopyTextureInfo<'_> {
+        wgpu::TexelCopyTextureInfo {
+            texture: &self.texture,
+            mip_level: 0,
+            origin: wgpu::Origin3d {
+                x: 0,
+                y: 0,
+                z: layer,
+            },
+            aspect: wgpu::TextureAspect::All,
+        }
+    }
+
+    pub fn layer_extent(&self) -> wgpu::Extent3d {
+        wgpu::Extent3d {
+            width: self.size(),
+            height: self.size(),
+            depth_or_array_layers: 1,
+        }
+    }
+
     pub fn size(&self) -> u32 {
         self.texture.width()
+    }
+
+    pub fn format(&self) -> DepthFormat {
+        self.format
     }
 
     pub fn layers(&self) -> u32 {
@@ -113,7 +143,11 @@ impl DepthMap {
 
     /// Device memory of all layers.
     pub fn bytes(&self) -> u64 {
-        bytes(self.size(), self.texture.depth_or_array_layers())
+        bytes(
+            self.size(),
+            self.texture.depth_or_array_layers(),
+            self.format,
+        )
     }
 }
 
@@ -125,6 +159,6 @@ fn allocated_layers(device: &wgpu::Device, layers: u32) -> u32 {
     layers + u32::from(opengl && not_an_array)
 }
 
-fn bytes(size: u32, layers: u32) -> u64 {
-    u64::from(size) * u64::from(size) * u64::from(layers) * 4
+fn bytes(size: u32, layers: u32, format: DepthFormat) -> u64 {
+    u64::from(size) * u64::from(size) * u64::from(layers) * format.bytes_per_texel()
 }

@@ -5,13 +5,17 @@
 //! pipeline.rs     CasterPipeline: how a kind of caster is laid out and shaded
 //! pipeline_build.rs  the wgpu side of it
 //! mesh.rs         MeshCaster: a ready-made caster
+//! depth_format.rs DepthFormat: 32 or 16 bits a texel
 //! depth_map.rs    the layered depth texture
-//! recorder.rs     which views need drawing, and the passes
+//! content.rs      what a layer holds, and what a frame must draw
+//! recorder.rs     the passes
 //! upload.rs       uniform buffers written in command order
 //! device_scope.rs device errors as values
 //! ```
 
 mod caster;
+mod content;
+mod depth_format;
 mod depth_map;
 mod device_scope;
 mod mesh;
@@ -21,24 +25,26 @@ mod recorder;
 mod upload;
 
 pub use caster::{Revision, ShadowCaster};
+pub(crate) use content::{Plan, ViewDraws};
+pub use depth_format::DepthFormat;
 pub(crate) use depth_map::DepthMap;
 pub(crate) use device_scope::{DeviceRefusal, capture_device_errors};
 pub use mesh::{MeshCaster, MeshCasterDescriptor, MeshIndices};
 pub use pipeline::{
     CasterPipeline, CasterPipelineDescriptor, CasterVertex, ModelTransform, PositionAttribute,
 };
-pub(crate) use recorder::{Recorder, ViewDraws};
+pub(crate) use recorder::Recorder;
 pub(crate) use upload::UploadBuffer;
 
-/// Format of every depth map: reversed 32-bit depth, whose error is a few ulps anywhere in the range.
-pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-
-/// Clears a depth map to "nothing casts" (reversed: 0) and keeps what is drawn.
-fn depth_attachment(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+/// A depth attachment that keeps what is drawn.
+fn depth_attachment(
+    view: &wgpu::TextureView,
+    load: wgpu::LoadOp<f32>,
+) -> wgpu::RenderPassDepthStencilAttachment<'_> {
     wgpu::RenderPassDepthStencilAttachment {
         view,
         depth_ops: Some(wgpu::Operations {
-            load: wgpu::LoadOp::Clear(0.0),
+            load,
             store: wgpu::StoreOp::Store,
         }),
         stencil_ops: None,

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::cast::pipeline_build::both_windings;
-use crate::cast::{DeviceRefusal, capture_device_errors};
+use crate::cast::pipeline_build::{ByFormat, create_pipelines};
+use crate::cast::{DepthFormat, DeviceRefusal, capture_device_errors};
 use crate::error::CasterError;
 
 /// Where the built-in vertex stage finds positions.
@@ -96,6 +96,9 @@ pub struct CasterPipelineDescriptor<'a> {
     pub topology: wgpu::PrimitiveTopology,
     /// Index format for strips with primitive restart; none otherwise.
     pub strip_index_format: Option<wgpu::IndexFormat>,
+    /// Formats of the maps that it will be drawn into; not empty. Default `Float32` alone; add `Unorm16` where a light has
+    /// such a map. Each format is one more wgpu pipeline.
+    pub depth_formats: &'a [DepthFormat],
 }
 
 impl CasterPipelineDescriptor<'_> {
@@ -111,6 +114,7 @@ impl CasterPipelineDescriptor<'_> {
             front_face: wgpu::FrontFace::Ccw,
             topology: wgpu::PrimitiveTopology::TriangleList,
             strip_index_format: None,
+            depth_formats: &[DepthFormat::Float32],
         }
     }
 }
@@ -131,8 +135,7 @@ pub struct CasterPipeline {
 
 #[derive(Debug)]
 struct Variants {
-    /// As described, and with the other winding; the same where nothing is culled.
-    by_winding: [wgpu::RenderPipeline; 2],
+    by_format: ByFormat,
     /// None for the engine's own WGSL.
     built_in: Option<(PositionAttribute, ModelTransform)>,
     topology: wgpu::PrimitiveTopology,
@@ -156,6 +159,9 @@ impl CasterPipeline {
         descriptor: &CasterPipelineDescriptor<'_>,
     ) -> Result<Self, CasterError> {
         check_topology(descriptor)?;
+        if descriptor.depth_formats.is_empty() {
+            return Err(CasterError::NoDepthFormat);
+        }
         let built_in = match descriptor.vertex {
             CasterVertex::BuiltIn { position, model } => {
                 check_position(&position)?;
@@ -164,7 +170,7 @@ impl CasterPipeline {
             }
             CasterVertex::Wgsl { .. } => None,
         };
-        let by_winding = capture_device_errors(device, || both_windings(device, descriptor))
+        let by_format = capture_device_errors(device, || create_pipelines(device, descriptor))
             .map_err(|refusal| CasterError::Device {
                 message: match refusal {
                     DeviceRefusal::OutOfMemory => "out of memory".to_owned(),
@@ -173,7 +179,7 @@ impl CasterPipeline {
             })?;
         Ok(Self {
             variants: Arc::new(Variants {
-                by_winding,
+                by_format,
                 built_in,
                 topology: descriptor.topology,
                 strip_index_format: descriptor.strip_index_format,
@@ -182,9 +188,11 @@ impl CasterPipeline {
         })
     }
 
-    /// The wgpu pipeline, for engines that record depth passes of their own.
-    pub fn wgpu_pipeline(&self) -> &wgpu::RenderPipeline {
-        &self.variants.by_winding[usize::from(self.mirrored)]
+    /// The wgpu pipeline for maps of `format`, for engines that record depth passes of their own; none where
+    /// [`CasterPipelineDescriptor::depth_formats`] did not name it.
+    pub fn wgpu_pipeline(&self, format: DepthFormat) -> Option<&wgpu::RenderPipeline> {
+        let windings = self.variants.by_format[format.index()].as_ref()?;
+        Some(&windings[usize::from(self.mirrored)])
     }
 
     /// The same pipeline for casters whose transform mirrors (negative determinant), so that culling takes the same faces.

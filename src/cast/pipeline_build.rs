@@ -1,6 +1,6 @@
 //! The wgpu side of caster pipelines: layouts, vertex state, depth state.
 
-use crate::cast::DEPTH_FORMAT;
+use crate::cast::DepthFormat;
 use crate::cast::pipeline::{
     CasterPipelineDescriptor, CasterVertex, ModelTransform, PositionAttribute,
 };
@@ -8,10 +8,16 @@ use crate::cast::recorder::VIEW_UNIFORM_BYTES;
 use crate::shader;
 
 /// The pipeline as described, and with the other winding; the same where nothing is culled.
-pub(crate) fn both_windings(
+pub(crate) type BothWindings = [wgpu::RenderPipeline; 2];
+
+/// By [`DepthFormat::index`]; none for a format that no map of the engine has.
+pub(crate) type ByFormat = [Option<BothWindings>; DepthFormat::ALL.len()];
+
+/// The pipelines for all formats that `descriptor` names.
+pub(crate) fn create_pipelines(
     device: &wgpu::Device,
     descriptor: &CasterPipelineDescriptor<'_>,
-) -> [wgpu::RenderPipeline; 2] {
+) -> ByFormat {
     match descriptor.vertex {
         CasterVertex::BuiltIn { position, model } => {
             let source = [shader::CASTER.source, shader::CASTER_BUILTIN.source].concat();
@@ -32,7 +38,7 @@ pub(crate) fn both_windings(
                 buffers,
                 bind_group_layouts,
             };
-            create_both(device, descriptor, &stages)
+            create_by_format(device, descriptor, &stages)
         }
     }
 }
@@ -60,7 +66,7 @@ fn built_in(
     source: &str,
     position: &PositionAttribute,
     model: &ModelTransform,
-) -> [wgpu::RenderPipeline; 2] {
+) -> ByFormat {
     let position_attribute = [wgpu::VertexAttribute {
         format: position.format,
         offset: position.offset,
@@ -83,7 +89,7 @@ fn built_in(
         offset,
     } = *model
     else {
-        return create_both(device, descriptor, &stages);
+        return create_by_format(device, descriptor, &stages);
     };
     let columns = [0, 1, 2, 3].map(|column| wgpu::VertexAttribute {
         format: wgpu::VertexFormat::Float32x4,
@@ -98,7 +104,7 @@ fn built_in(
     let buffers = [positions.clone(), matrices];
     stages.vertex_entry = "shadow_caster_vertex_instance";
     stages.buffers = &buffers;
-    create_both(device, descriptor, &stages)
+    create_by_format(device, descriptor, &stages)
 }
 
 /// What differs between the built-in stages and the engine's own.
@@ -110,11 +116,11 @@ struct Stages<'a> {
     bind_group_layouts: &'a [Option<&'a wgpu::BindGroupLayout>],
 }
 
-fn create_both(
+fn create_by_format(
     device: &wgpu::Device,
     descriptor: &CasterPipelineDescriptor<'_>,
     stages: &Stages<'_>,
-) -> [wgpu::RenderPipeline; 2] {
+) -> ByFormat {
     let label = descriptor.label.unwrap_or("shadow caster");
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(label),
@@ -128,7 +134,7 @@ fn create_both(
         bind_group_layouts: &groups,
         immediate_size: 0,
     });
-    let create = |front_face| {
+    let create = |format: DepthFormat, front_face| {
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(label),
             layout: Some(&layout),
@@ -146,7 +152,7 @@ fn create_both(
                 ..Default::default()
             },
             depth_stencil: Some(wgpu::DepthStencilState {
-                format: DEPTH_FORMAT,
+                format: format.texture_format(),
                 depth_write_enabled: Some(true),
                 depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
                 stencil: wgpu::StencilState::default(),
@@ -163,11 +169,19 @@ fn create_both(
             cache: None,
         })
     };
-    let described = create(descriptor.front_face);
-    let mirrored = match (descriptor.cull, descriptor.front_face) {
-        (None, _) => described.clone(),
-        (Some(_), wgpu::FrontFace::Ccw) => create(wgpu::FrontFace::Cw),
-        (Some(_), wgpu::FrontFace::Cw) => create(wgpu::FrontFace::Ccw),
+    let both = |format| {
+        let described = create(format, descriptor.front_face);
+        let mirrored = match (descriptor.cull, descriptor.front_face) {
+            (None, _) => described.clone(),
+            (Some(_), wgpu::FrontFace::Ccw) => create(format, wgpu::FrontFace::Cw),
+            (Some(_), wgpu::FrontFace::Cw) => create(format, wgpu::FrontFace::Ccw),
+        };
+        [described, mirrored]
     };
-    [described, mirrored]
+    DepthFormat::ALL.map(|format| {
+        descriptor
+            .depth_formats
+            .contains(&format)
+            .then(|| both(format))
+    })
 }

@@ -2,10 +2,10 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use crate::cast::content::{Content, Plan, ViewDraws};
 use crate::cast::pipeline_build::view_layout;
 use crate::cast::upload::{PendingUpload, UploadBuffer};
-use crate::cast::{CasterPipeline, DepthMap, Revision, ShadowCaster};
-use crate::fit::ViewPlacement;
+use crate::cast::{CasterPipeline, DepthFormat, DepthMap, ShadowCaster};
 use crate::{ShadowError, ShadowView};
 
 /// Mirror of `ShadowCasterView` in `wgsl/caster.wgsl`.
@@ -19,70 +19,24 @@ pub(crate) struct CasterViewUniform {
 
 pub(crate) const VIEW_UNIFORM_BYTES: u64 = size_of::<CasterViewUniform>() as u64;
 
-/// One view of this frame and the casters that it needs, by index.
-#[derive(Debug)]
-pub(crate) struct ViewDraws {
-    pub view: ShadowView,
-    pub casters: Vec<u32>,
-    /// The layer keeps what it holds, whatever has changed.
-    pub deferred: bool,
-    /// Set by [`Recorder::record`]: false where the layer held this picture already.
-    pub drawn: bool,
-}
-
-impl ViewDraws {
-    pub fn new(view: ShadowView, casters: Vec<u32>) -> Self {
-        Self {
-            view,
-            casters,
-            deferred: false,
-            drawn: false,
-        }
-    }
-
-    fn revisions(&self, casters: &[&dyn ShadowCaster]) -> impl Iterator<Item = Revision> {
-        self.casters
-            .iter()
-            .map(|&index| casters[index as usize].revision())
-    }
-}
-
-/// What a layer of the map holds.
-#[derive(Clone, Debug, Default)]
-struct Content {
-    /// None before the first pass.
-    placement: Option<ViewPlacement>,
-    revisions: Vec<Revision>,
-}
-
-impl Content {
-    /// Is it what `draws` would put there?
-    fn holds(&self, draws: &ViewDraws, casters: &[&dyn ShadowCaster]) -> bool {
-        self.placement == Some(*draws.view.placement())
-            && self.revisions.iter().all(Revision::is_stable)
-            && self.revisions.iter().copied().eq(draws.revisions(casters))
-    }
-
-    /// Takes on what `draws` will put there; false where the layer holds it already.
-    fn replace(&mut self, draws: &ViewDraws, casters: &[&dyn ShadowCaster]) -> bool {
-        if self.holds(draws, casters) {
-            return false;
-        }
-        self.placement = Some(*draws.view.placement());
-        self.revisions.clear();
-        self.revisions.extend(draws.revisions(casters));
-        true
-    }
-}
-
 /// Draws views into the layers of a depth map, and remembers what each layer holds.
 #[derive(Debug)]
 pub(crate) struct Recorder {
-    label: String,
     uniforms: UploadBuffer,
+    bytes: Vec<u8>,
     stride: u64,
     bind_group: wgpu::BindGroup,
-    contents: Vec<Content>,
+    layers: Vec<Layer>,
+    /// wgpu's OpenGL backend copies no depth textures; there all casters of a view are drawn again.
+    can_copy: bool,
+}
+
+#[derive(Debug)]
+struct Layer {
+    label: String,
+    content: Content,
+    /// A texture of one layer for the part that stands still; none before the first use.
+    still_part: Option<DepthMap>,
 }
 
 /// Everything that could fail, done before the encoder is touched.
@@ -122,38 +76,66 @@ impl Recorder {
                 }),
             }],
         });
+        let layers = (0..layers).map(|layer| Layer {
+            label: format!("{label} layer {layer}"),
+            content: Content::default(),
+            still_part: None,
+        });
         Ok(Self {
-            label: label.to_owned(),
             uniforms,
+            bytes: Vec::new(),
             stride,
             bind_group,
-            contents: vec![Content::default(); layers as usize],
+            layers: layers.collect(),
+            can_copy: device.adapter_info().backend != wgpu::Backend::Gl,
         })
     }
 
     /// Would `draws` need a pass?
     pub fn needs(&self, draws: &ViewDraws, casters: &[&dyn ShadowCaster]) -> bool {
-        !self.contents[draws.view.layer() as usize].holds(draws, casters)
+        !self.layers[draws.view.layer() as usize]
+            .content
+            .holds(draws, casters)
     }
 
-    /// Stages the uniforms of `views`.
+    /// Device memory of the still parts.
+    pub fn bytes(&self) -> u64 {
+        let parts = self.layers.iter().filter_map(|l| l.still_part.as_ref());
+        parts.map(DepthMap::bytes).sum()
+    }
+
+    /// Plans the frame for `map` and stages the uniforms of `views`. `field` is the path of the casters.
     pub fn prepare(
-        &self,
+        &mut self,
         device: &wgpu::Device,
-        views: &[ViewDraws],
+        map: &DepthMap,
+        views: &mut [ViewDraws],
+        casters: &[&dyn ShadowCaster],
+        field: &'static str,
     ) -> Result<PreparedViews, ShadowError> {
-        let mut bytes = vec![0; self.stride as usize * self.contents.len()];
+        self.bytes.clear();
+        self.bytes
+            .resize(self.stride as usize * self.layers.len(), 0);
         for draws in views {
+            let layer = &mut self.layers[draws.view.layer() as usize];
+            draws.plan = layer.content.plan(draws, casters, self.can_copy);
+            if draws.plan == Plan::RenewStill && !layer.make_still_part(device, map) {
+                draws.plan = Plan::All;
+            }
+            if draws.plan != Plan::Keep {
+                check_formats(map, &draws.casters, casters, field)?;
+            }
             let uniform = CasterViewUniform::of(&draws.view);
             let start = self.stride as usize * draws.view.layer() as usize;
-            bytes[start..][..size_of_val(&uniform)].copy_from_slice(bytemuck::bytes_of(&uniform));
+            self.bytes[start..][..size_of_val(&uniform)]
+                .copy_from_slice(bytemuck::bytes_of(&uniform));
         }
         Ok(PreparedViews {
-            upload: self.uniforms.prepare(device, &bytes)?,
+            upload: self.uniforms.prepare(device, &self.bytes)?,
         })
     }
 
-    /// Records a pass for each view whose layer does not hold it already; returns the number of passes.
+    /// Records what was planned; returns the number of passes.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -165,49 +147,146 @@ impl Recorder {
         self.uniforms.commit(encoder, prepared.upload);
         let mut passes = 0;
         for draws in views {
-            let content = &mut self.contents[draws.view.layer() as usize];
-            draws.drawn = !draws.deferred && content.replace(draws, casters);
-            if draws.drawn {
-                self.draw(encoder, map, draws, casters);
-                passes += 1;
+            let index = draws.view.layer();
+            let offset = (self.stride * u64::from(index)) as u32;
+            let layer = &mut self.layers[index as usize];
+            if draws.plan == Plan::Keep {
+                continue;
+            }
+            layer.content.replace(draws, casters);
+            let mut pass = LayerPass {
+                encoder,
+                label: &layer.label,
+                view_group: (&self.bind_group, offset),
+                format: map.format(),
+            };
+            let still = |caster: &u32| layer.content.is_still(*caster);
+            let all = draws.casters.iter().copied();
+            passes += 1;
+            match &layer.still_part {
+                Some(part) if draws.plan != Plan::All => {
+                    let still_casters = all.clone().filter(still);
+                    if draws.plan == Plan::RenewStill {
+                        pass.draw(
+                            part.layer_view(0),
+                            CLEAR,
+                            &draws.view,
+                            still_casters,
+                            casters,
+                        );
+                        passes += 1;
+                    } else {
+                        for index in still_casters {
+                            draws.copied += 1;
+                            draws.copied_triangles +=
+                                u64::from(casters[index as usize].triangles());
+                        }
+                    }
+                    pass.encoder.copy_texture_to_texture(
+                        part.layer_copy(0),
+                        map.layer_copy(index),
+                        map.layer_extent(),
+                    );
+                    let moving = all.filter(|caster| !still(caster));
+                    pass.draw(
+                        map.layer_view(index),
+                        wgpu::LoadOp::Load,
+                        &draws.view,
+                        moving,
+                        casters,
+                    );
+                }
+                _ => pass.draw(map.layer_view(index), CLEAR, &draws.view, all, casters),
             }
         }
         passes
     }
 
+    /// Forgets what the layers hold, so that every view is drawn again.
+    pub fn invalidate(&mut self) {
+        for layer in &mut self.layers {
+            layer.content = Content::default();
+        }
+        self.uniforms.invalidate();
+    }
+}
+
+impl Layer {
+    /// False where the device has no room for one: then all casters are drawn.
+    fn make_still_part(&mut self, device: &wgpu::Device, map: &DepthMap) -> bool {
+        if self.still_part.is_none() {
+            let label = format!("{} still part", self.label);
+            self.still_part =
+                DepthMap::new(device, &label, "map_size", map.size(), 1, map.format()).ok();
+        }
+        self.still_part.is_some()
+    }
+}
+
+/// Nothing casts (reversed depth).
+const CLEAR: wgpu::LoadOp<f32> = wgpu::LoadOp::Clear(0.0);
+
+/// A pass over one layer.
+struct LayerPass<'a> {
+    encoder: &'a mut wgpu::CommandEncoder,
+    label: &'a str,
+    view_group: (&'a wgpu::BindGroup, u32),
+    format: DepthFormat,
+}
+
+impl LayerPass<'_> {
     fn draw(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        map: &DepthMap,
-        draws: &ViewDraws,
+        &mut self,
+        target: &wgpu::TextureView,
+        load: wgpu::LoadOp<f32>,
+        view: &ShadowView,
+        drawn: impl Iterator<Item = u32>,
         casters: &[&dyn ShadowCaster],
     ) {
-        let layer = draws.view.layer();
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some(&format!("{} layer {layer}", self.label)),
+        let mut pass = self.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some(self.label),
             color_attachments: &[],
-            depth_stencil_attachment: Some(super::depth_attachment(map.layer_view(layer))),
+            depth_stencil_attachment: Some(super::depth_attachment(target, load)),
             timestamp_writes: None,
             occlusion_query_set: None,
             multiview_mask: None,
         });
-        let offset = (self.stride * u64::from(layer)) as u32;
-        pass.set_bind_group(0, &self.bind_group, &[offset]);
+        let (group, offset) = self.view_group;
+        pass.set_bind_group(0, group, &[offset]);
         let mut current: Option<&CasterPipeline> = None;
-        for &index in &draws.casters {
+        for index in drawn {
             let caster = casters[index as usize];
             let pipeline = caster.pipeline();
             if current != Some(pipeline) {
-                pass.set_pipeline(pipeline.wgpu_pipeline());
+                // That there is one was checked when the frame was planned.
+                let Some(for_format) = pipeline.wgpu_pipeline(self.format) else {
+                    continue;
+                };
+                pass.set_pipeline(for_format);
                 current = Some(pipeline);
             }
-            caster.draw(&mut pass, &draws.view);
+            caster.draw(&mut pass, view);
         }
     }
+}
 
-    /// Forgets what the layers hold, so that every view is drawn again.
-    pub fn invalidate(&mut self) {
-        self.contents.fill(Content::default());
-        self.uniforms.invalidate();
-    }
+/// Have all casters of a view pipelines for the map's format?
+fn check_formats(
+    map: &DepthMap,
+    drawn: &[u32],
+    casters: &[&dyn ShadowCaster],
+    field: &'static str,
+) -> Result<(), ShadowError> {
+    let format = map.format();
+    let refused = drawn.iter().find(|&&index| {
+        let pipeline = casters[index as usize].pipeline();
+        pipeline.wgpu_pipeline(format).is_none()
+    });
+    refused.map_or(Ok(()), |&index| {
+        Err(ShadowError::CasterFormat {
+            field,
+            index: index as usize,
+            format,
+        })
+    })
 }

@@ -4,6 +4,7 @@ use glam::{DMat4, DVec3, DVec4, Mat4, Vec3};
 
 use crate::ShadowError;
 use crate::fit::region::{HalfSpace, HalfSpaces};
+use crate::fit::stability::PictureCorners;
 
 /// The camera whose picture the shadows are for.
 ///
@@ -98,6 +99,9 @@ impl CameraView {
             planes,
             eye,
             forward,
+            render_from_view,
+            corners: PictureCorners::new(&clip_from_view, forward_view),
+            max_distance: f64::from(self.max_distance),
         })
     }
 }
@@ -107,9 +111,18 @@ pub(crate) struct CameraFrustum {
     pub planes: HalfSpaces,
     eye: DVec3,
     forward: DVec3,
+    pub(super) render_from_view: DMat4,
+    pub(super) corners: PictureCorners,
+    max_distance: f64,
 }
 
 impl CameraFrustum {
+    /// Depths along the view at which the volume begins and ends, whatever is in it; the end may be infinite.
+    pub fn depth_range(&self) -> (f64, f64) {
+        let corners = &self.corners;
+        (corners.depth_near, corners.depth_far.min(self.max_distance))
+    }
+
     /// Unit vector along the view.
     pub fn forward(&self) -> DVec3 {
         self.forward

@@ -7,6 +7,7 @@ use crate::fit::axes::{LightAxes, LightBox};
 use crate::fit::camera::CameraFrustum;
 use crate::fit::region::{HalfSpace, HalfSpaces};
 use crate::fit::split::CascadeSplit;
+use crate::fit::stability::Stability;
 use crate::fit::visible::{self, Seen, SeenBounds};
 use crate::fit::window::{DepthRange, MapWindow, OrthoWindow, WindowRequest};
 
@@ -14,9 +15,9 @@ use crate::fit::window::{DepthRange, MapWindow, OrthoWindow, WindowRequest};
 pub(crate) const MAX_CASCADES: usize = 8;
 
 /// Where receivers count.
-pub(crate) enum Region {
+pub(crate) enum Region<'a> {
     /// What a camera sees of them.
-    Camera(Box<CameraFrustum>),
+    Camera(&'a CameraFrustum),
     /// All that lies in a given box; the window then is the box, whatever the casters.
     Bounds(Aabb),
 }
@@ -25,7 +26,7 @@ pub(crate) enum Region {
 pub(crate) struct FitInput<'a> {
     pub axes: LightAxes,
     pub origin: DVec3,
-    pub region: Region,
+    pub region: Region<'a>,
     /// Bounds of casters, which receive too.
     pub casters: &'a [Aabb],
     /// Bounds of surfaces that only receive.
@@ -39,6 +40,7 @@ pub(crate) struct FitLimits {
     pub margin_texels: u32,
     pub cascades: usize,
     pub split: CascadeSplit,
+    pub stability: Stability,
 }
 
 /// A caster as the fit sees it.
@@ -109,11 +111,38 @@ fn required_box(
             (cascade == 0 && !bounds.is_empty()).then(|| input.axes.light_box(bounds, input.origin))
         }
         Region::Camera(camera) => {
-            let (near, far) = (visible.depth_near, visible.depth_far);
+            let (near, far) = match limits.stability {
+                Stability::Rungs => (visible.depth_near, visible.depth_far),
+                Stability::Rotation => camera.depth_range(),
+            };
             let end = |index| limits.split.depth(index, limits.cascades, near, far);
             let between = (end(cascade), end(cascade + 1));
-            visible::light_box_between(camera, seen, between, &input.axes, input.origin)
+            // An explicit end before all that is seen leaves nothing to its cascade.
+            if between.0 == between.1 && near < far {
+                return None;
+            }
+            let seen =
+                visible::light_box_between(camera, seen, between, &input.axes, input.origin)?;
+            Some(match limits.stability {
+                Stability::Rungs => seen,
+                Stability::Rotation => around_slice(input, camera, between, seen),
+            })
         }
+    }
+}
+
+/// The depths of `seen` over the whole of a slice's sphere.
+fn around_slice(
+    input: &FitInput<'_>,
+    camera: &CameraFrustum,
+    between: (f64, f64),
+    seen: LightBox,
+) -> LightBox {
+    let sphere = camera.slice_sphere(between.0, between.1);
+    let center = input.axes.light_from_world * (input.origin + sphere.center_render);
+    LightBox {
+        min: (center - sphere.radius).with_z(seen.min.z),
+        max: (center + sphere.radius).with_z(seen.max.z),
     }
 }
 
@@ -156,7 +185,7 @@ fn fit_window(
         return None;
     }
     let mut covered = required;
-    if matches!(input.region, Region::Camera(_)) {
+    if matches!(input.region, Region::Camera(_)) && limits.stability == Stability::Rungs {
         covered.min = required.min.max(shadows.min).with_z(required.min.z);
         covered.max = required.max.min(shadows.max);
     }

@@ -7,6 +7,7 @@
 //! ladder.rs       quantised extents with hysteresis
 //! window.rs       the rectangle of a map plane that a view covers, snapped to whole texels
 //! split.rs        where one cascade ends and the next begins
+//! stability.rs    extents that no motion of the camera changes
 //! visible.rs      what a camera sees of the receivers
 //! directional.rs  all of it put together for a sun
 //! local.rs        the same for the views of a spot or point light
@@ -20,6 +21,7 @@ mod ladder;
 mod local;
 mod region;
 mod split;
+mod stability;
 mod view;
 mod visible;
 mod window;
@@ -33,5 +35,6 @@ pub(crate) use directional::{
 };
 pub(crate) use local::{LocalFit, LocalInput, MAX_LOCAL_VIEWS};
 pub use split::CascadeSplit;
+pub use stability::Stability;
 pub use view::ShadowView;
 pub(crate) use view::ViewPlacement;

@@ -16,6 +16,13 @@ pub enum CascadeSplit {
         /// 0 is uniform, 1 logarithmic.
         lambda: f32,
     },
+    /// Depths along the view, in world units and growing, at which all cascades but the last end; as many as there are
+    /// cascades but one, the rest is not read. For scenes with a known break, such as a cockpit before a landscape. A cascade
+    /// that ends before the nearest receiver stays empty.
+    Explicit {
+        /// Ends of the first cascades.
+        ends: [f32; 7],
+    },
 }
 
 impl CascadeSplit {
@@ -42,6 +49,7 @@ impl CascadeSplit {
                 let lambda = f64::from(lambda);
                 lambda * logarithmic + (1.0 - lambda) * uniform
             }
+            Self::Explicit { ends } => f64::from(ends[index - 1]).max(near).min(far),
         }
     }
 }

@@ -55,7 +55,9 @@ fn light_wgsl(name: &str, receiver: &Receiver<'_>, binding: u32) -> String {
         Selection::FirstInside => first_that_holds(name, receiver),
         Selection::CubeFace => face_that_holds(name, receiver),
     };
+    let blends = receiver.sampling.blend > 0.0 && count > 1;
     let lookup = match receiver.sampling.filter.directions() {
+        None if blends => blended_lookup(name, receiver),
         None => single_lookup(name, receiver, argument),
         Some((offsets, samples)) => mean_lookup(name, receiver, argument, offsets, samples),
     };
@@ -124,6 +126,28 @@ fn single_lookup(name: &str, receiver: &Receiver<'_>, argument: &str) -> String 
     }}
     let receiver = {make_receiver}(shadow_views_{name}[view], position, normal);
     return {lookup};
+"
+    )
+}
+
+/// The mean of all cascades that hold the place, weighted from near to far: a cascade takes what the ones before it leave, and
+/// less toward its border. Continuous wherever a border lies.
+fn blended_lookup(name: &str, receiver: &Receiver<'_>) -> String {
+    let count = receiver.view_count;
+    let make_receiver = make_receiver(receiver);
+    let lookup = lookup(name, receiver);
+    format!(
+        "    var lit = 0.0;
+    var share = 0.0;
+    for (var view = shadow_view_{name}(position); view < {count}u && share < 1.0; view++) {{
+        if shadow_view_holds(shadow_views_{name}[view], position) {{
+            let weight = (1.0 - share) * shadow_view_weight(shadow_views_{name}[view], position);
+            let receiver = {make_receiver}(shadow_views_{name}[view], position, normal);
+            lit += weight * {lookup};
+            share += weight;
+        }}
+    }}
+    return select(1.0, lit / share, share > 0.0);
 "
     )
 }

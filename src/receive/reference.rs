@@ -297,6 +297,17 @@ pub fn holds(view: &ShadowViewUniform, position: DVec3) -> bool {
     within && reached && place.w > 0.0 && place.z >= 0.0
 }
 
+/// Weight of a cascade at a place that it holds, as `shadow_view_weight` in `wgsl/view.wgsl`.
+pub fn weight(view: &ShadowViewUniform, position: DVec3) -> f64 {
+    let relative = position - Vec3::from_array(view.anchor).as_dvec3();
+    let place = matrix(view) * relative.extend(1.0);
+    let texel = place.truncate().truncate() / place.w;
+    let inner = Vec4::from_array(view.inner).as_dvec4();
+    let from_border =
+        (texel - inner.truncate().truncate()).min(DVec2::new(inner.z, inner.w) - texel);
+    (from_border.min_element() / f64::from(view.fade_texels)).clamp(1.0 / 4096.0, 1.0)
+}
+
 fn receiver_at(
     view: &ShadowViewUniform,
     position: DVec3,

@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
+use crate::cast::DepthFormat;
 use crate::fit::ShadowView;
 use crate::receive::bias::lateral_error_texels;
 use crate::receive::{Bias, Filter};
@@ -55,8 +56,10 @@ pub struct ShadowViewUniform {
     pub viewer: [f32; 4],
     /// Texels along x and y over which a light with size spreads a penumbra, per difference of ndc depth.
     pub penumbra: [f32; 2],
+    /// Texels from the border within which a cascade gives way to the next; 0 for an end without one.
+    pub fade_texels: f32,
     /// WGSL rounds the struct up to 16 bytes.
-    pub padding: [f32; 2],
+    pub padding: f32,
 }
 
 /// A range for the uniforms: an endless one becomes a distance that none exceeds and whose square is finite.
@@ -69,12 +72,32 @@ pub(crate) fn endless_range(reach_world: f64) -> f32 {
 pub(crate) struct Sampling {
     pub filter: Filter,
     pub bias: Bias,
+    pub depth_format: DepthFormat,
+    /// Share of a cascade's width in which it gives way to the next.
+    pub blend: f32,
 }
 
 /// What rounding may move a lookup by: 6uN is 1/350 of a texel at N = 8192.
 const ROUNDING_TEXELS: f64 = 1.0 / 64.0;
 
 impl Sampling {
+    /// Of maps of 32 bits that do not blend.
+    pub fn new(filter: Filter, bias: Bias) -> Self {
+        Self {
+            filter,
+            bias,
+            depth_format: DepthFormat::Float32,
+            blend: 0.0,
+        }
+    }
+
+    /// Height in world units above which a caster that lies on a surface always casts onto it: what the bias leaves open, and
+    /// a step of the map's format.
+    pub fn worst_gap_world(&self, view: &ShadowView) -> f32 {
+        let step = self.depth_format.step_ndc() * f64::from(view.depth_range_world());
+        self.bias.worst_gap_world(self.filter, view) + step as f32
+    }
+
     /// Texels by which a lookup may leave the place of its receiver: the filter's reach, the way that an offset along the
     /// normal can lead across the map, and rounding.
     pub fn border_texels(&self) -> f64 {
@@ -121,7 +144,7 @@ pub(crate) fn view_uniform(view: &ShadowView, sampling: &Sampling) -> ShadowView
         layer: view.layer(),
         inner,
         map_size: view.map_size() as f32,
-        depth_error: depth_error as f32,
+        depth_error: (depth_error + sampling.depth_format.step_ndc()) as f32,
         depth_error_relative: depth_error_relative as f32,
         lateral_error: lateral_error_texels(view) as f32,
         offset_texels: sampling.bias.offset_texels(sampling.filter) as f32,
@@ -137,6 +160,7 @@ pub(crate) fn view_uniform(view: &ShadowView, sampling: &Sampling) -> ShadowView
             .penumbra_texels(f64::from(sampling.filter.light_size()))
             .as_vec2()
             .to_array(),
-        padding: [0.0; 2],
+        fade_texels: sampling.blend * view.map_size() as f32,
+        padding: 0.0,
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
-    Aabb, Coverage, DEPTH_FORMAT, DirectionalFrame, DirectionalLight, DirectionalShadow,
+    Aabb, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor,
 };
 
@@ -32,7 +32,7 @@ fn the_texture_can_be_copied() {
     };
     let report = record(gpu, &mut shadow, &frame);
     let texture = shadow.texture();
-    assert_eq!(texture.format(), DEPTH_FORMAT);
+    assert_eq!(texture.format(), wgpu::TextureFormat::Depth32Float);
     assert_eq!((texture.width(), texture.height()), (SIZE, SIZE));
     assert_eq!(texture.depth_or_array_layers(), 2);
     assert_eq!(report.bytes_held, u64::from(SIZE * SIZE * 4 * 2));

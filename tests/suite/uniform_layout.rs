@@ -72,6 +72,7 @@ fn shadow_view_is_one_layout() {
         sample_radius,
         viewer,
         penumbra,
+        fade_texels,
         padding,
     });
     assert_eq!(wgsl, rust);

@@ -6,10 +6,10 @@ use std::cell::RefCell;
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, CascadeSplit, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor,
-    OmniShadowPool, PoolDescriptor, PoolFrame, PoolLight, ShadowCaster, ShadowSlot, SpotFrame,
-    SpotLight, SpotShadow, SpotShadowDescriptor, SpotShadowPool,
+    Aabb, CascadeSplit, Coverage, DepthFormat, DirectionalFrame, DirectionalLight,
+    DirectionalShadow, DirectionalShadowDescriptor, OmniFrame, OmniLight, OmniShadow,
+    OmniShadowDescriptor, OmniShadowPool, PoolDescriptor, PoolFrame, PoolLight, ShadowCaster,
+    ShadowSlot, SpotFrame, SpotLight, SpotShadow, SpotShadowDescriptor, SpotShadowPool, Stability,
 };
 
 use proptest::{prop_assert, prop_assert_eq};
@@ -28,7 +28,7 @@ use crate::support::watched::Watched;
 #[test]
 fn any_descriptor_is_taken_or_refused() {
     let counts = Counts::default();
-    let descriptor = (size(), 0..11_u32, filter(), bias(), 0..3, number());
+    let descriptor = (size(), 0..11_u32, filter(), bias(), 0..4, number());
     run(
         300,
         descriptor,
@@ -37,6 +37,9 @@ fn any_descriptor_is_taken_or_refused() {
             let split = match split {
                 0 => CascadeSplit::Uniform,
                 1 => CascadeSplit::Logarithmic,
+                2 => CascadeSplit::Explicit {
+                    ends: [lambda, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0],
+                },
                 _ => CascadeSplit::Practical { lambda },
             };
             let sun = DirectionalShadowDescriptor {
@@ -46,6 +49,9 @@ fn any_descriptor_is_taken_or_refused() {
                 split,
                 filter,
                 bias,
+                blend: lambda,
+                stability: Stability::Rungs,
+                depth_format: DepthFormat::Unorm16,
             };
             counts.count(&DirectionalShadow::new(device, &sun));
             let spot = SpotShadowDescriptor {
