@@ -2,10 +2,12 @@
 
 mod any_input;
 mod binding_errors;
+mod blending;
 mod caster_errors;
 mod casters;
 mod contact;
 mod debug_view;
+mod depth_formats;
 mod depth_texture;
 mod direction_filters;
 mod emitted_wgsl;
@@ -18,6 +20,7 @@ mod golden;
 mod hard_cases;
 mod keeping;
 mod mesh_errors;
+mod never_stale;
 mod omni;
 mod omni_input;
 mod out_of_range;
@@ -29,4 +32,5 @@ mod receiver_parity;
 mod self_shadow;
 mod shader_validation;
 mod spot;
+mod stability;
 mod uniform_layout;

@@ -12,5 +12,6 @@ pub mod random_scene;
 pub mod readback;
 pub mod rounding;
 pub mod scene;
+pub mod texture_bytes;
 pub mod watched;
 pub mod wgsl;

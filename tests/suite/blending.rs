@@ -1,0 +1,174 @@
+//! Cascades that give way to each other: no step at any border, and the weighted mean that the twin in f64 computes.
+
+use glam::{DVec3, Vec3};
+use wgpu_shadows::reference::{self, DepthLayer};
+use wgpu_shadows::{
+    Bias, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, Filter, ShadowBindings, ShadowBindingsDescriptor,
+};
+
+use crate::support::camera::Camera;
+use crate::support::gpu::gpu;
+use crate::support::probe::{Point, SunProbe, record};
+use crate::support::readback;
+use crate::support::scene::{Mesh, Scene};
+
+const MAP_SIZE: u32 = 128;
+
+/// Planks that float over the floor, across the way into the depth, under a sun whose shadows lead along them: every border
+/// between cascades cuts through edges.
+fn planks() -> Scene {
+    let mut meshes: Vec<_> = (0..6)
+        .map(|plank| {
+            let x = -4.3 + 1.7 * plank as f32;
+            Mesh::cuboid(Vec3::new(x, 2.0, -10.0), Vec3::new(x + 0.8, 2.2, 90.0))
+        })
+        .collect();
+    meshes.push(Mesh::floor(0.0, 100.0));
+    Scene::new(gpu(), &meshes)
+}
+
+fn sun(blend: f32) -> (DirectionalShadow, SunProbe) {
+    let gpu = gpu();
+    let mut shadow = DirectionalShadow::new(
+        &gpu.device,
+        &DirectionalShadowDescriptor {
+            map_size: MAP_SIZE,
+            cascades: 3,
+            blend,
+            ..Default::default()
+        },
+    )
+    .expect("a valid sun");
+    let camera = Camera::modern(
+        DVec3::new(0.0, 3.0, -6.0),
+        DVec3::new(0.6, 0.0, 20.0),
+        0.9,
+        1.5,
+    );
+    let scene = planks();
+    let frame = DirectionalFrame {
+        origin: DVec3::ZERO,
+        light: DirectionalLight::new(Vec3::new(0.13, -1.0, 0.4)),
+        coverage: Coverage::Camera(camera.view().with_max_distance(50.0)),
+        casters: &scene.list(),
+        receivers: &[],
+    };
+    record(gpu, &mut shadow, &frame);
+    let probe = SunProbe::new(gpu, &shadow);
+    (shadow, probe)
+}
+
+/// Lines of the floor into the depth, in steps of `step`.
+fn lines(step: f32) -> Vec<Vec<Point>> {
+    (0..80)
+        .map(|line| {
+            let x = -3.9 + 0.0951 * line as f32;
+            (0..(12.0 / step) as u32)
+                .map(|index| Point::new(Vec3::new(x, 0.0, index as f32 * step), Vec3::Y))
+                .collect()
+        })
+        .collect()
+}
+
+fn steepest(probe: &SunProbe, lines: &[Vec<Point>]) -> f32 {
+    lines
+        .iter()
+        .map(|line| {
+            let seen = probe.ask(gpu(), line);
+            let steps = seen.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+            steps.fold(0.0, f32::max)
+        })
+        .fold(0.0, f32::max)
+}
+
+/// Along the way into the depth a step of `d` world units changes an answer by at most `3 d / s` for each axis of the finest
+/// map, texels of `s` (the default's sharpness, a ramp one texel wide), and the weights of two cascades by `d / (blend N s)`
+/// each. Without blending, the borders show as higher steps.
+#[test]
+fn no_border_is_a_step() {
+    let step = 1.0 / 4096.0;
+    let lines = lines(step);
+    let (shadow, probe) = sun(0.2);
+    let finest = shadow
+        .views()
+        .map(|view| view.texel_size_world().min_element())
+        .fold(f32::INFINITY, f32::min);
+    let per_step = step / finest;
+    let allowed = 2.0 * 3.0 * per_step + 2.0 * per_step / (0.2 * MAP_SIZE as f32) + 1e-5;
+    let blended = steepest(&probe, &lines);
+    let (_, plain) = sun(0.0);
+    let plain = steepest(&plain, &lines);
+    assert!(blended <= allowed, "{blended} > {allowed}");
+    assert!(
+        plain > 1.5 * allowed,
+        "the scene has borders: {plain}, {allowed}"
+    );
+}
+
+/// The device's answers are the twin's, from the maps read back, to `1e-3`: texel coordinates err by `14uN`, 1e-4 of a texel,
+/// a sample answers no steeper than six per texel, and comparisons are no ties on a floor under floating planks.
+#[test]
+fn the_mean_is_the_twins() {
+    let (shadow, probe) = sun(0.2);
+    let layers: Vec<_> = (0..3)
+        .map(|layer| readback::depth_layer(gpu(), shadow.texture(), layer))
+        .collect();
+    let (mut mixed, mut all) = (0, 0);
+    for line in lines(0.05) {
+        for (point, seen) in line.iter().zip(probe.ask(gpu(), &line)) {
+            let place = Vec3::from_array(point.position).as_dvec3();
+            let (mut lit, mut share) = (0.0, 0.0);
+            let mut parts = 0;
+            for (view, depths) in shadow.view_uniforms().iter().zip(&layers) {
+                if share < 1.0 && reference::holds(view, place) {
+                    let map = DepthLayer {
+                        size: MAP_SIZE,
+                        depths,
+                    };
+                    let filter = Filter::default();
+                    let at = reference::receiver(view, filter, Bias::Auto, place, DVec3::Y);
+                    let weight = (1.0 - share) * reference::weight(view, place);
+                    lit += weight * reference::visibility(filter, &map, &at);
+                    share += weight;
+                    parts += 1;
+                }
+            }
+            let wanted = if share > 0.0 { lit / share } else { 1.0 };
+            assert!(
+                (f64::from(seen) - wanted).abs() < 1e-3,
+                "{place}: {seen} for {wanted}"
+            );
+            mixed += usize::from(parts > 1 && wanted > 0.01 && wanted < 0.99);
+            all += 1;
+        }
+    }
+    assert!(mixed > 200, "{mixed} of {all} lie between two maps");
+}
+
+/// What does not blend does not pay: the WGSL then has no weights, nor has that of a single cascade.
+#[test]
+fn only_cascades_that_blend_have_weights() {
+    for (cascades, blend, weighted) in [(3, 0.0, false), (1, 0.2, false), (3, 0.2, true)] {
+        let shadow = DirectionalShadow::new(
+            &gpu().device,
+            &DirectionalShadowDescriptor {
+                map_size: 16,
+                cascades,
+                blend,
+                ..Default::default()
+            },
+        )
+        .expect("a valid sun");
+        let bindings = ShadowBindings::new(
+            &gpu().device,
+            &ShadowBindingsDescriptor {
+                lights: &[("sun", shadow.source())],
+                ..Default::default()
+            },
+        )
+        .expect("valid bindings");
+        let used = bindings.wgsl().matches("shadow_view_weight(").count() > 1;
+        assert_eq!(used, weighted, "{cascades} cascades, blend {blend}");
+    }
+}

@@ -1,0 +1,225 @@
+//! Maps that are kept, wholly or in part, against maps that are drawn anew: the same bits, over thousands of random frames.
+//! On Vulkan alone: wgpu's OpenGL backend copies no depth textures, so there it keeps no parts, and reads none back this fast.
+
+use glam::{DVec3, Mat4, Vec3};
+use wgpu_shadows::{
+    CasterPipeline, CasterPipelineDescriptor, Coverage, DepthFormat, DirectionalFrame,
+    DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, MeshCaster, OmniFrame,
+    OmniLight, OmniShadow, OmniShadowDescriptor, ShadowCaster, ShadowReport, ViewStatus,
+};
+
+use crate::support::camera::Camera;
+use crate::support::gpu::{Gpu, vulkan};
+use crate::support::random::Random;
+use crate::support::scene::Mesh;
+use crate::support::texture_bytes::TextureBytes;
+
+/// Boxes, of which some move, all move, or none does, for some frames each; some come and go.
+struct Crowd {
+    casters: Vec<MeshCaster>,
+    shown: Vec<bool>,
+    movers: usize,
+    random: Random,
+}
+
+impl Crowd {
+    fn new(gpu: &Gpu, pipeline: &CasterPipeline, seed: u64) -> Self {
+        let mut random = Random::new(seed);
+        let casters: Vec<_> = (0..24)
+            .map(|_| {
+                let low = random.point(DVec3::new(-8.0, 0.0, -8.0), DVec3::new(7.0, 3.0, 7.0));
+                let high = low + random.point(DVec3::splat(0.3), DVec3::splat(1.7));
+                Mesh::cuboid(low.as_vec3(), high.as_vec3()).caster(gpu, pipeline, Mat4::IDENTITY)
+            })
+            .collect();
+        Self {
+            shown: vec![true; casters.len()],
+            casters,
+            movers: 1,
+            random,
+        }
+    }
+
+    fn step(&mut self, gpu: &Gpu) {
+        if self.random.unit() < 0.04 {
+            self.movers = [0, 1, 1, 2, self.casters.len()][self.random.index(5)];
+        }
+        for index in 0..self.movers {
+            let shift = self.random.point(DVec3::splat(-2.0), DVec3::splat(2.0));
+            self.casters[index]
+                .set_transform(&gpu.queue, Mat4::from_translation(shift.as_vec3()))
+                .expect("a finite matrix");
+        }
+        if self.random.unit() < 0.03 {
+            let index = self.random.index(self.casters.len());
+            self.shown[index] = !self.shown[index];
+        }
+        if self.random.unit() < 0.01 {
+            let (a, b) = (self.random.index(24), self.random.index(24));
+            self.casters.swap(a, b);
+        }
+    }
+
+    fn list(&self) -> Vec<&dyn ShadowCaster> {
+        let shown = self.casters.iter().zip(&self.shown);
+        shown
+            .filter_map(|(caster, shown)| shown.then_some(caster as &dyn ShadowCaster))
+            .collect()
+    }
+}
+
+/// How often each way of filling a layer was taken.
+#[derive(Debug, Default)]
+struct Ways {
+    kept: u32,
+    drawn: u32,
+    copied: u32,
+}
+
+impl Ways {
+    fn count(&mut self, report: &ShadowReport) {
+        for view in &report.views {
+            match view.status {
+                ViewStatus::Kept => self.kept += 1,
+                ViewStatus::Drawn if view.copied > 0 => self.copied += 1,
+                ViewStatus::Drawn => self.drawn += 1,
+                _ => {}
+            }
+        }
+    }
+
+    fn assert_all_taken(&self, least: u32) {
+        let Self {
+            kept,
+            drawn,
+            copied,
+        } = *self;
+        assert!(kept.min(drawn).min(copied) >= least, "{self:?}");
+    }
+}
+
+/// The camera and the light stand still most of the time, and now and then jump.
+#[test]
+fn kept_maps_of_a_sun_are_what_would_be_drawn() {
+    for (format, frames) in [(DepthFormat::Float32, 1500), (DepthFormat::Unorm16, 500)] {
+        let gpu = vulkan();
+        let pipeline = CasterPipeline::new(
+            &gpu.device,
+            &CasterPipelineDescriptor {
+                depth_formats: &[format],
+                ..Default::default()
+            },
+        )
+        .expect("a valid pipeline");
+        let mut crowd = Crowd::new(gpu, &pipeline, 5);
+        let descriptor = DirectionalShadowDescriptor {
+            map_size: 128,
+            cascades: 2,
+            depth_format: format,
+            ..Default::default()
+        };
+        let sun = || DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");
+        let (mut kept, mut fresh) = (sun(), sun());
+        let [kept_bytes, fresh_bytes] =
+            [&kept, &fresh].map(|sun| TextureBytes::new(gpu, sun.texture()));
+        let mut random = Random::new(91);
+        let mut camera = Camera::modern(DVec3::new(0.0, 6.0, 14.0), DVec3::ZERO, 1.0, 1.5);
+        let mut light = Vec3::new(0.4, -1.0, 0.3);
+        let mut ways = Ways::default();
+        for frame_index in 0..frames {
+            crowd.step(gpu);
+            if random.unit() < 0.02 {
+                let eye = random.point(DVec3::new(-9.0, 3.0, 9.0), DVec3::new(9.0, 9.0, 15.0));
+                camera = Camera::modern(eye, DVec3::ZERO, 1.0, 1.5);
+            }
+            if random.unit() < 0.005 {
+                light.x = random.range(-1.0, 1.0) as f32;
+            }
+            let list = crowd.list();
+            let frame = DirectionalFrame {
+                origin: DVec3::ZERO,
+                light: DirectionalLight::new(light),
+                coverage: Coverage::Camera(camera.view()),
+                casters: &list,
+                receivers: &[],
+            };
+            let mut encoder = gpu.encoder();
+            let report = kept.record(&gpu.device, &mut encoder, &frame);
+            ways.count(report.expect("a valid frame"));
+            fresh.invalidate();
+            let report = fresh.record(&gpu.device, &mut encoder, &frame);
+            let report = report.expect("a valid frame").clone();
+            kept_bytes.copy(&mut encoder);
+            fresh_bytes.copy(&mut encoder);
+            gpu.submit(encoder);
+            let (now, wanted) = (kept_bytes.read(gpu), fresh_bytes.read(gpu));
+            for view in &report.views {
+                // A layer that nothing casts into is asked by nobody.
+                if view.status == ViewStatus::Drawn {
+                    let layer = view.layer as usize;
+                    assert!(
+                        now[layer] == wanted[layer],
+                        "{format:?}, frame {frame_index}, layer {layer}: {ways:?}"
+                    );
+                }
+            }
+        }
+        ways.assert_all_taken(frames / 20);
+    }
+}
+
+/// The same of the six faces of a lamp that jumps now and then.
+#[test]
+fn kept_faces_of_a_lamp_are_what_would_be_drawn() {
+    let gpu = vulkan();
+    let pipeline = CasterPipeline::new(&gpu.device, &CasterPipelineDescriptor::new())
+        .expect("a valid pipeline");
+    let mut crowd = Crowd::new(gpu, &pipeline, 6);
+    let descriptor = OmniShadowDescriptor {
+        map_size: 64,
+        ..Default::default()
+    };
+    let lamp = || OmniShadow::new(&gpu.device, &descriptor).expect("a valid lamp");
+    let (mut kept, mut fresh) = (lamp(), lamp());
+    let [kept_bytes, fresh_bytes] =
+        [&kept, &fresh].map(|lamp| TextureBytes::new(gpu, lamp.texture()));
+    let mut random = Random::new(92);
+    let mut position_world = DVec3::new(0.3, 1.7, -0.4);
+    let mut ways = Ways::default();
+    for frame_index in 0..500 {
+        crowd.step(gpu);
+        if random.unit() < 0.02 {
+            position_world = random.point(DVec3::splat(-4.0), DVec3::splat(4.0));
+        }
+        let list = crowd.list();
+        let frame = OmniFrame {
+            origin: DVec3::ZERO,
+            light: OmniLight {
+                position_world,
+                range: 15.0,
+            },
+            camera: None,
+            casters: &list,
+            receivers: &[],
+        };
+        let mut encoder = gpu.encoder();
+        let report = kept.record(&gpu.device, &mut encoder, &frame);
+        ways.count(report.expect("a valid frame"));
+        fresh.invalidate();
+        let report = fresh.record(&gpu.device, &mut encoder, &frame);
+        let report = report.expect("a valid frame").clone();
+        kept_bytes.copy(&mut encoder);
+        fresh_bytes.copy(&mut encoder);
+        gpu.submit(encoder);
+        let (now, wanted) = (kept_bytes.read(gpu), fresh_bytes.read(gpu));
+        for view in &report.views {
+            let layer = view.layer as usize;
+            let drawn = view.status == ViewStatus::Drawn;
+            assert!(
+                !drawn || now[layer] == wanted[layer],
+                "frame {frame_index}, face {layer}: {ways:?}"
+            );
+        }
+    }
+    ways.assert_all_taken(25);
+}

@@ -1,0 +1,274 @@
+//! Extents that no motion of the camera changes, splits at given depths, and what a walk through a town changes.
+
+use glam::DVec3;
+use wgpu_shadows::{
+    CascadeSplit, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, ShadowError, Stability, reference,
+};
+
+use crate::support::camera::Camera;
+use crate::support::gpu::gpu;
+use crate::support::probe::{Point, SunProbe, record};
+use crate::support::random::Random;
+use crate::support::rounding::U;
+use crate::support::scene::{Mesh, Scene};
+
+const LIGHT: DVec3 = DVec3::new(0.37, -1.0, 0.21);
+
+fn sun(descriptor: &DirectionalShadowDescriptor<'_>) -> DirectionalShadow {
+    DirectionalShadow::new(&gpu().device, descriptor).expect("a valid sun")
+}
+
+/// Houses along streets.
+fn town() -> Scene {
+    let mut random = Random::new(31);
+    let mut meshes = vec![Mesh::floor(0.0, 150.0)];
+    for index in 0..100 {
+        let cell = DVec3::new(f64::from(index % 10 - 5), 0.0, f64::from(index / 10 - 5)) * 26.0;
+        let low = cell + random.point(DVec3::new(3.0, 0.0, 3.0), DVec3::new(7.0, 0.0, 7.0));
+        let size = random.point(DVec3::new(7.0, 4.0, 7.0), DVec3::new(14.0, 22.0, 14.0));
+        meshes.push(Mesh::cuboid(low.as_vec3(), (low + size).as_vec3()));
+    }
+    Scene::new(gpu(), &meshes)
+}
+
+/// A camera that walks 1.5 units a second at 60 frames and turns by 20 degrees a second.
+fn walker(frame: u32) -> Camera {
+    let time = f64::from(frame) / 60.0;
+    let eye = DVec3::new(-20.0 + 1.5 * time, 1.7, 1.0);
+    let angle = (20.0 * time).to_radians();
+    let target = eye + DVec3::new(angle.cos(), -0.03, angle.sin());
+    Camera::modern(eye, target, 1.0, 16.0 / 9.0)
+}
+
+fn frame<'a>(
+    casters: &'a [&'a dyn wgpu_shadows::ShadowCaster],
+    camera: &Camera,
+    max_distance: f32,
+) -> DirectionalFrame<'a> {
+    DirectionalFrame {
+        origin: DVec3::ZERO,
+        light: DirectionalLight::new(LIGHT.as_vec3()),
+        coverage: Coverage::Camera(camera.view().with_max_distance(max_distance)),
+        casters,
+        receivers: &[],
+    }
+}
+
+/// Over 200 frames of the walk, a point of the floor that the same cascade serves with the same texel size before and after
+/// keeps its visibility, to the rounding of texel coordinates (`28uN` in each frame, times the sharpness of three and two
+/// axes) but for ties of comparisons, one in five hundred. Texel sizes change for at most a twentieth of the cascades a frame.
+#[test]
+fn a_walk_changes_shadows_only_with_a_rung() {
+    const FRAMES: u32 = 200;
+    const MAP_SIZE: u32 = 512;
+    let scene = town();
+    let list = scene.list();
+    let mut shadow = sun(&DirectionalShadowDescriptor {
+        map_size: MAP_SIZE,
+        cascades: 4,
+        ..Default::default()
+    });
+    let probe = SunProbe::new(gpu(), &shadow);
+    let mut random = Random::new(3);
+    let places: Vec<_> = (0..3000)
+        .map(|_| {
+            let place = random.point(DVec3::new(-25.0, 0.0, -30.0), DVec3::new(45.0, 0.0, 45.0));
+            place.as_vec3().as_dvec3()
+        })
+        .collect();
+    let points: Vec<_> = places
+        .iter()
+        .map(|place| Point::rounded(*place, DVec3::Y))
+        .collect();
+    let band = (2.0 * 28.0 * U * f64::from(MAP_SIZE) * 6.0) as f32 + 1e-5;
+    let mut before: Option<(Vec<_>, Vec<f32>, [glam::Vec2; 4])> = None;
+    let (mut compared, mut changed, mut rescaled) = (0_u32, 0, 0_u32);
+    for index in 0..FRAMES {
+        let camera = walker(index);
+        let report = record(gpu(), &mut shadow, &frame(&list, &camera, 120.0));
+        let sizes = [0, 1, 2, 3].map(|layer| report.views[layer].texel_size_world);
+        let served: Vec<_> = places
+            .iter()
+            .map(|place| {
+                let uniforms = shadow.view_uniforms();
+                let seen = camera.sees(*place, 120.0, 0.001);
+                seen.then(|| {
+                    uniforms
+                        .iter()
+                        .position(|view| reference::holds(view, *place))
+                })
+                .flatten()
+            })
+            .collect();
+        let seen = probe.ask(gpu(), &points);
+        if let Some((served_before, seen_before, sizes_before)) = &before {
+            rescaled += (0..4).filter(|&l| sizes[l] != sizes_before[l]).count() as u32;
+            for point in 0..places.len() {
+                let layer = served[point].filter(|_| served[point] == served_before[point]);
+                if layer.is_some_and(|layer| sizes[layer] == sizes_before[layer]) {
+                    compared += 1;
+                    changed += u32::from((seen[point] - seen_before[point]).abs() > band);
+                }
+            }
+        }
+        before = Some((served, seen, sizes));
+    }
+    assert!(compared > 50_000, "{compared}");
+    assert!(changed * 500 <= compared, "{changed} of {compared}");
+    let windows = 4 * FRAMES;
+    assert!(
+        rescaled > 0 && rescaled * 20 <= windows,
+        "{rescaled} of {windows}"
+    );
+}
+
+/// Whatever the camera does, the texels of a sphere's cascades are the ones of the first frame, to the bit, and what it sees
+/// in the slice is held.
+#[test]
+fn no_motion_changes_a_spheres_texels() {
+    let scene = town();
+    let list = scene.list();
+    let mut shadow = sun(&DirectionalShadowDescriptor {
+        map_size: 256,
+        cascades: 3,
+        stability: Stability::Rotation,
+        ..Default::default()
+    });
+    let mut random = Random::new(8);
+    let mut texels = [None; 3];
+    let mut held = 0;
+    for _ in 0..60 {
+        let eye = random.point(DVec3::new(-60.0, 1.0, -60.0), DVec3::new(60.0, 9.0, 60.0));
+        let mut way = random.direction();
+        way.y = -0.3 * way.y.abs();
+        let camera = Camera::modern(eye, eye + way, 1.0, 1.5);
+        let report = record(gpu(), &mut shadow, &frame(&list, &camera, 80.0));
+        for (texel, view) in texels.iter_mut().zip(&report.views) {
+            let now = view.texel_size_world;
+            if now.x > 0.0 {
+                assert_eq!(now.x, now.y);
+                assert_eq!(*texel.get_or_insert(now), now);
+            }
+        }
+        for _ in 0..50 {
+            let place = random.point(DVec3::new(-90.0, 0.0, -90.0), DVec3::new(90.0, 0.0, 90.0));
+            if camera.sees(place, 80.0, 0.001) {
+                let mut views = shadow.view_uniforms().iter();
+                let is_held = views.any(|view| reference::holds(view, place));
+                let serves = report.views.iter().all(|view| view.casters > 0);
+                assert!(is_held || !serves, "{place}");
+                held += usize::from(is_held);
+            }
+        }
+    }
+    assert!(held > 100, "{held}");
+    assert!(texels.iter().all(Option::is_some), "{texels:?}");
+}
+
+/// A sphere needs an end: a camera without a far plane must bring a distance limit.
+#[test]
+fn a_sphere_around_an_endless_view_is_refused() {
+    let scene = town();
+    let list = scene.list();
+    let mut shadow = sun(&DirectionalShadowDescriptor {
+        map_size: 64,
+        stability: Stability::Rotation,
+        ..Default::default()
+    });
+    let mut encoder = gpu().encoder();
+    let endless = frame(&list, &walker(0), f32::INFINITY);
+    let error = shadow
+        .record(&gpu().device, &mut encoder, &endless)
+        .expect_err("no end");
+    let named = "DirectionalFrame::coverage.max_distance";
+    assert!(
+        matches!(&error, ShadowError::OutOfRange { field, .. } if *field == named),
+        "{error}"
+    );
+    assert!(
+        shadow
+            .record(&gpu().device, &mut encoder, &frame(&list, &walker(0), 50.0))
+            .is_ok()
+    );
+}
+
+/// Each place is held by the cascade of its depth or a finer one, unless no shadow reaches it.
+#[test]
+fn explicit_splits_end_where_they_say() {
+    let scene = town();
+    let list = scene.list();
+    let ends = [15.0, 40.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let mut shadow = sun(&DirectionalShadowDescriptor {
+        map_size: 256,
+        cascades: 3,
+        split: CascadeSplit::Explicit { ends },
+        ..Default::default()
+    });
+    let camera = walker(0);
+    let report = record(gpu(), &mut shadow, &frame(&list, &camera, 80.0));
+    let texels: Vec<_> = report
+        .views
+        .iter()
+        .map(|view| view.texel_size_world.x)
+        .collect();
+    assert!(
+        texels.is_sorted() && texels[2] > 2.0 * texels[0],
+        "{texels:?}"
+    );
+    let mut random = Random::new(12);
+    let (mut by_cascade, mut left_out) = ([0; 3], Vec::new());
+    for _ in 0..12_000 {
+        let place = random.point(DVec3::new(-30.0, 0.0, -50.0), DVec3::new(60.0, 0.0, 50.0));
+        if camera.sees(place, 80.0, 0.001) {
+            let depth = (camera.pose.eye - place).dot(camera.pose.axes.z_axis);
+            let cascade = usize::from(depth > 15.0) + usize::from(depth > 40.0);
+            let holds = |view: &_| reference::holds(view, place);
+            let uniforms = shadow.view_uniforms();
+            let held = holds(&uniforms[cascade]);
+            if !held && !uniforms[..cascade].iter().any(holds) {
+                left_out.push(Point::rounded(place, DVec3::Y));
+            }
+            by_cascade[cascade] += usize::from(held);
+        }
+    }
+    assert!(by_cascade.iter().all(|count| *count > 20), "{by_cascade:?}");
+    // What neither its own nor a finer cascade holds is out of the reach of every shadow.
+    left_out.push(Point::rounded(camera.pose.eye + DVec3::Y * 100.0, DVec3::Y));
+    let seen = SunProbe::new(gpu(), &shadow).ask(gpu(), &left_out);
+    assert!(seen.iter().all(|seen| *seen > 0.999), "{seen:?}");
+    // Ends before everything that is seen leave their cascades empty.
+    let mut shadow = sun(&DirectionalShadowDescriptor {
+        map_size: 256,
+        cascades: 3,
+        split: CascadeSplit::Explicit {
+            ends: [0.01, 0.02, 0.0, 0.0, 0.0, 0.0, 0.0],
+        },
+        ..Default::default()
+    });
+    let report = record(gpu(), &mut shadow, &frame(&list, &camera, 80.0));
+    let empty = |index: usize| report.views[index].texel_size_world.x == 0.0;
+    assert!(empty(0) && empty(1) && !empty(2), "{report:?}");
+    // And ends that do not grow, or are no numbers, are refused.
+    for ends in [
+        [2.0, 2.0],
+        [3.0, 1.0],
+        [f32::NAN, 3.0],
+        [1.0, f32::INFINITY],
+    ] {
+        let mut all = [0.0; 7];
+        all[..2].copy_from_slice(&ends);
+        let refused = DirectionalShadow::new(
+            &gpu().device,
+            &DirectionalShadowDescriptor {
+                cascades: 3,
+                split: CascadeSplit::Explicit { ends: all },
+                ..Default::default()
+            },
+        );
+        assert!(
+            matches!(refused, Err(ShadowError::OutOfRange { .. })),
+            "{ends:?}"
+        );
+    }
+}
