@@ -241,7 +241,7 @@ impl DirectionalShadow {
         let fit = self.fit.fit(&input, &self.limits, &mut self.scratch);
         let views = self.cull(&fit, &axes, frame.origin)?;
         let layers: [_; MAX_CASCADES] =
-            std::array::from_fn(|layer| LayerBase::directional(layer as u32));
+            std::array::from_fn(|layer| LayerBase::directional(layer as u32, fit.slices[layer]));
         let maps_frame = MapsFrame {
             views,
             layers: &layers[..self.limits.cascades],

@@ -66,7 +66,7 @@ pub use directional::{
     Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
 };
 pub use error::{BindingsError, CasterError, DebugViewError, ShadowError};
-pub use fit::{CameraView, CascadeSplit, ShadowView, Stability};
+pub use fit::{CameraView, CascadeSplit, ShadowView, SliceReport, Stability};
 pub use omni::{OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor};
 pub use pool::{OmniShadowPool, PoolDescriptor, PoolFrame, PoolLight, ShadowSlot, SpotShadowPool};
 pub use receive::{

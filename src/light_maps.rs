@@ -8,7 +8,7 @@ use crate::receive::{
     endless_range, view_uniform,
 };
 use crate::report::{ShadowReport, ViewReport, ViewStatus};
-use crate::{ShadowError, ShadowView};
+use crate::{ShadowError, ShadowView, SliceReport};
 
 /// The common part of a light's shadows.
 #[derive(Debug)]
@@ -58,15 +58,18 @@ pub(crate) struct LayerBase {
     pub reach_world: f64,
     /// It needed drawing and was put off.
     pub deferred: bool,
+    /// Of a cascade of a camera's view.
+    pub slice: Option<SliceReport>,
 }
 
 impl LayerBase {
-    pub fn directional(layer: u32) -> Self {
+    pub fn directional(layer: u32, slice: Option<SliceReport>) -> Self {
         Self {
             layer,
             anchor_render: Vec3::ZERO,
             reach_world: f64::INFINITY,
             deferred: false,
+            slice,
         }
     }
 }
@@ -262,7 +265,10 @@ impl LightMaps {
                     ..ViewReport::empty(base.layer, caster_count)
                 },
                 None => ViewReport::empty(base.layer, caster_count),
-                Some(draws) => view_report(draws, &self.sampling, casters),
+                Some(draws) => ViewReport {
+                    slice: base.slice,
+                    ..view_report(draws, &self.sampling, casters)
+                },
             }
         });
         self.report.bytes_held = self.map.bytes() + self.recorder.bytes();
@@ -309,6 +315,7 @@ fn view_report(
         texel_size_world: draws.view.texel_size_world(),
         depth_range_world: draws.view.depth_range_world(),
         worst_gap_world: sampling.worst_gap_world(&draws.view),
+        slice: None,
     }
 }
 

@@ -139,6 +139,7 @@ impl LocalLights {
                 anchor_render: (position_world - frame.origin).as_vec3(),
                 reach_world,
                 deferred: !candidate.refreshed,
+                slice: None,
             }));
             if candidate.refreshed {
                 views.extend(candidate.views.iter_mut().filter_map(Option::take));

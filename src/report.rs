@@ -2,6 +2,8 @@
 
 use glam::Vec2;
 
+use crate::SliceReport;
+
 /// What became of a view in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -39,6 +41,8 @@ pub struct ViewReport {
     /// Height in world units above which a caster that lies on a surface always casts onto it: the worst gap (peter-panning)
     /// that the light's bias can leave, at the worst angle.
     pub worst_gap_world: f32,
+    /// For a cascade of a camera's view: its slice, and how much of the map falls on it.
+    pub slice: Option<SliceReport>,
 }
 
 impl ViewReport {
@@ -54,6 +58,7 @@ impl ViewReport {
             texel_size_world: Vec2::ZERO,
             depth_range_world: 0.0,
             worst_gap_world: 0.0,
+            slice: None,
         }
     }
 }

@@ -16,7 +16,7 @@ impl Table {
     pub fn add(&mut self, report: &ShadowReport, record_time: Duration) -> String {
         self.record_times.push(record_time);
         let mut rows = String::from(
-            "    cascade  status  casters  culled  texel (m)      depth (m)  worst gap (m)\n",
+            "    cascade  status  casters  culled  texel (m)      depth (m)  worst gap (m)  texels on slice\n",
         );
         for view in &report.views {
             let status = match view.status {
@@ -28,7 +28,7 @@ impl Table {
             // Writing to a string does not fail.
             let _ = writeln!(
                 rows,
-                "    {:7}  {status:6}  {:7}  {:6}  {:.3} x {:.3}  {:9.1}  {:13.4}",
+                "    {:7}  {status:6}  {:7}  {:6}  {:.3} x {:.3}  {:9.1}  {:13.4}  {:14.0}%",
                 view.layer,
                 view.casters,
                 view.culled,
@@ -36,6 +36,7 @@ impl Table {
                 view.texel_size_world.y,
                 view.depth_range_world,
                 view.worst_gap_world,
+                100.0 * view.slice.map_or(0.0, |slice| slice.share_of_map),
             );
         }
         let _ = writeln!(

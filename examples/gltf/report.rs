@@ -49,6 +49,8 @@ fn maps_report(name: &str, report: &ShadowReport, lights: &[usize]) -> Value {
                 "texel_size_world": view.texel_size_world.to_array(),
                 "depth_range_world": view.depth_range_world,
                 "worst_gap_world": view.worst_gap_world,
+                "share_of_map": view.slice.map(|slice| slice.share_of_map),
+                "texels_across_picture": view.slice.map(|slice| slice.texels_across_picture.to_array()),
             })
         })
         .collect();

@@ -5,7 +5,8 @@ use glam::DVec3;
 use crate::Aabb;
 use crate::fit::axes::{LightAxes, LightBox};
 use crate::fit::camera::CameraFrustum;
-use crate::fit::region::{HalfSpace, HalfSpaces};
+use crate::fit::footprint::{FootprintScratch, Slice, SliceReport, push_column};
+use crate::fit::region::HalfSpaces;
 use crate::fit::split::CascadeSplit;
 use crate::fit::stability::Stability;
 use crate::fit::visible::{self, Seen, SeenBounds};
@@ -57,6 +58,8 @@ pub(crate) struct DirectionalFit {
     /// One per cascade; none for a cascade that nothing can shadow.
     pub windows: [Option<OrthoWindow>; MAX_CASCADES],
     held: [Option<OrthoWindow>; MAX_CASCADES],
+    /// Of the cascades of a camera's view.
+    pub slices: [Option<SliceReport>; MAX_CASCADES],
 }
 
 /// Lists that keep their memory from frame to frame.
@@ -65,6 +68,7 @@ pub(crate) struct FitScratch {
     /// One entry per caster, in order.
     pub casters: Vec<CasterBounds>,
     seen: Vec<Seen>,
+    footprint: FootprintScratch,
 }
 
 impl DirectionalFit {
@@ -87,48 +91,66 @@ impl DirectionalFit {
             }));
         let mut next = self.clone();
         for cascade in 0..limits.cascades {
-            let required = required_box(input, limits, &visible, &scratch.seen, cascade);
+            let slice = camera_slice(input, limits, &visible, cascade);
+            let required = required_box(input, limits, slice.as_ref(), &scratch.seen, cascade);
             let held = self.held[cascade].as_ref();
             let window = required
                 .and_then(|required| fit_window(input, limits, &scratch.casters, required, held));
             next.held[cascade] = window.or(next.held[cascade]);
             next.windows[cascade] = window;
+            next.slices[cascade] = slice.zip(window).map(|(slice, window)| {
+                let scratch = &mut scratch.footprint;
+                slice.report(&input.axes, input.origin, &window.plane, scratch)
+            });
         }
         next
     }
+}
+
+/// Cascade `cascade` of a camera's view; none where its depths hold nothing.
+fn camera_slice<'a>(
+    input: &FitInput<'a>,
+    limits: &FitLimits,
+    visible: &'a SeenBounds,
+    cascade: usize,
+) -> Option<Slice<'a>> {
+    let Region::Camera(camera) = &input.region else {
+        return None;
+    };
+    let (near, far) = match limits.stability {
+        Stability::Rungs => (visible.depth_near, visible.depth_far),
+        Stability::Rotation => camera.depth_range(),
+    };
+    let end = |index| limits.split.depth(index, limits.cascades, near, far);
+    let between = (end(cascade), end(cascade + 1));
+    // An explicit end before all that is seen leaves nothing to its cascade.
+    let is_empty = between.0 == between.1 && near < far;
+    (!is_empty).then_some(Slice {
+        camera,
+        visible,
+        between,
+    })
 }
 
 /// Light-space box of the receivers that cascade `cascade` is for; none where there are none.
 fn required_box(
     input: &FitInput<'_>,
     limits: &FitLimits,
-    visible: &SeenBounds,
+    slice: Option<&Slice<'_>>,
     seen: &[Seen],
     cascade: usize,
 ) -> Option<LightBox> {
-    match &input.region {
-        Region::Bounds(bounds) => {
-            (cascade == 0 && !bounds.is_empty()).then(|| input.axes.light_box(bounds, input.origin))
-        }
-        Region::Camera(camera) => {
-            let (near, far) = match limits.stability {
-                Stability::Rungs => (visible.depth_near, visible.depth_far),
-                Stability::Rotation => camera.depth_range(),
-            };
-            let end = |index| limits.split.depth(index, limits.cascades, near, far);
-            let between = (end(cascade), end(cascade + 1));
-            // An explicit end before all that is seen leaves nothing to its cascade.
-            if between.0 == between.1 && near < far {
-                return None;
-            }
-            let seen =
-                visible::light_box_between(camera, seen, between, &input.axes, input.origin)?;
-            Some(match limits.stability {
-                Stability::Rungs => seen,
-                Stability::Rotation => around_slice(input, camera, between, seen),
-            })
-        }
+    if let Region::Bounds(bounds) = &input.region {
+        return (cascade == 0 && !bounds.is_empty())
+            .then(|| input.axes.light_box(bounds, input.origin));
     }
+    let slice = slice?;
+    let between = slice.between;
+    let seen = visible::light_box_between(slice.camera, seen, between, &input.axes, input.origin)?;
+    Some(match limits.stability {
+        Stability::Rungs => seen,
+        Stability::Rotation => around_slice(input, slice.camera, between, seen),
+    })
 }
 
 /// The depths of `seen` over the whole of a slice's sphere.
@@ -209,7 +231,8 @@ fn fit_window(
     };
     // Only what stands over the window counts for the near plane: a wide ground's far end does not. The rounded window is
     // larger than what was asked for, so this also takes in casters that touch only its rim.
-    let over_window = window_column(input, &plane);
+    let mut over_window = HalfSpaces::default();
+    push_column(&mut over_window, &input.axes, input.origin, &plane);
     let mut nearest = covered.min.z;
     for (caster, bounds) in casters.iter().zip(input.casters) {
         if caster.can_shadow && caster.light.max.z > nearest && window.holds_part_of(&caster.light)
@@ -224,27 +247,6 @@ fn fit_window(
         depth: depth(nearest),
         ..window
     })
-}
-
-/// The four sides of a window, in render space.
-fn window_column(input: &FitInput<'_>, plane: &MapWindow) -> HalfSpaces {
-    let mut column = HalfSpaces::default();
-    let (min, max) = (plane.min, plane.max());
-    for (axis, low, high) in [
-        (input.axes.right(), min.x, max.x),
-        (input.axes.up(), min.y, max.y),
-    ] {
-        let origin = axis.dot(input.origin);
-        column.push(HalfSpace {
-            normal: axis,
-            offset: origin - low,
-        });
-        column.push(HalfSpace {
-            normal: -axis,
-            offset: high - origin,
-        });
-    }
-    column
 }
 
 /// Four ulps of f32 at the farthest render coordinate of the covered box: finer texels than positions would resolve nothing.

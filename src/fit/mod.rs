@@ -4,6 +4,7 @@
 //! camera.rs       the engine's camera as half-spaces and depth along the view
 //! region.rs       exact vertices of (convex region ∩ box)
 //! axes.rs         world-fixed light axes, boxes in light space
+//! footprint.rs    what of a slice of the view a window covers
 //! ladder.rs       quantised extents with hysteresis
 //! window.rs       the rectangle of a map plane that a view covers, snapped to whole texels
 //! split.rs        where one cascade ends and the next begins
@@ -17,6 +18,7 @@
 mod axes;
 mod camera;
 mod directional;
+mod footprint;
 mod ladder;
 mod local;
 mod region;
@@ -33,6 +35,7 @@ pub use camera::CameraView;
 pub(crate) use directional::{
     DirectionalFit, FitInput, FitLimits, FitScratch, MAX_CASCADES, Region,
 };
+pub use footprint::SliceReport;
 pub(crate) use local::{LocalFit, LocalInput, MAX_LOCAL_VIEWS};
 pub use split::CascadeSplit;
 pub use stability::Stability;

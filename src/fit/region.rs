@@ -20,9 +20,9 @@ impl HalfSpace {
     }
 }
 
-/// Six sides of a camera's clip volume and its distance limit, with either the two ends of a slice or the five sides of a local
-/// light's view.
-const CAPACITY: usize = 12;
+/// Six sides of a camera's clip volume and its distance limit, with either the two ends of a slice and the four sides of a
+/// window, or the five sides of a local light's view.
+const CAPACITY: usize = 13;
 
 /// An intersection of at most [`CAPACITY`] half-spaces. None at all is all of space.
 #[derive(Clone, Copy, Debug, Default)]

@@ -68,14 +68,16 @@ impl PictureCorners {
         }
     }
 
+    /// The corners at a depth.
+    fn at(&self, depth: f64) -> [DVec3; 4] {
+        self.rays
+            .map(|(start, per_depth)| start + per_depth * depth)
+    }
+
     /// The smallest sphere with its centre on the slice's axis that holds the slice between two depths.
     fn sphere_in_view(&self, depth_near: f64, depth_far: f64) -> (DVec3, f64) {
-        let corners = |depth| {
-            self.rays
-                .map(|(start, per_depth)| start + per_depth * depth)
-        };
         let middle = |corners: &[DVec3; 4]| corners.iter().sum::<DVec3>() * 0.25;
-        let (near, far) = (corners(depth_near), corners(depth_far));
+        let (near, far) = (self.at(depth_near), self.at(depth_far));
         let (near_middle, far_middle) = (middle(&near), middle(&far));
         let reach = |middle: DVec3, corners: &[DVec3; 4]| {
             let distances = corners.iter().map(|corner| corner.distance_squared(middle));
@@ -96,6 +98,12 @@ impl PictureCorners {
 }
 
 impl CameraFrustum {
+    /// World height of the picture at a depth along the view.
+    pub fn picture_height(&self, depth: f64) -> f64 {
+        let [bottom, _, top, _] = self.corners.at(depth);
+        bottom.distance(top)
+    }
+
     /// A sphere that holds the slice between two depths along the view.
     pub fn slice_sphere(&self, depth_near: f64, depth_far: f64) -> SliceSphere {
         let (center, radius) = self.corners.sphere_in_view(depth_near, depth_far);

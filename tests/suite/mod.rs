@@ -31,6 +31,7 @@ mod pool_budget;
 mod receiver_parity;
 mod self_shadow;
 mod shader_validation;
+mod slice_report;
 mod spot;
 mod stability;
 mod uniform_layout;

@@ -1,0 +1,178 @@
+//! How much of a cascade's map falls on its slice of the view, and how its texels compare with the picture's pixels.
+
+use glam::{DVec2, DVec3, Vec2};
+
+use crate::Aabb;
+use crate::fit::LightAxes;
+use crate::fit::camera::CameraFrustum;
+use crate::fit::region::{HalfSpace, HalfSpaces};
+use crate::fit::visible::SeenBounds;
+use crate::fit::window::MapWindow;
+
+/// What of its slice of the camera's view a cascade covers, and how finely.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SliceReport {
+    /// Depth along the view, in world units, at which the cascade's slice begins: the nearest visible receiver for the first.
+    pub depth_near: f32,
+    /// Depth at which it ends.
+    pub depth_far: f32,
+    /// Share of the map's texels that fall on the slice, within the bounds of what is visible: 0 to 1. Of a map that is small
+    /// against this the rest lies behind the camera or beside its picture.
+    pub share_of_map: f32,
+    /// Texels across the height of the picture, on a surface that faces both light and camera: the fewest (coarser axis, nearest
+    /// depth) and the most (finer axis, farthest depth).
+    pub texels_across_picture: Vec2,
+}
+
+impl SliceReport {
+    /// Texels per pixel of a picture so many pixels high: the fewest and the most. Below 1, edges show their texels; far above
+    /// 1, the map could be smaller.
+    pub fn texels_per_pixel(&self, picture_height_pixels: u32) -> Vec2 {
+        self.texels_across_picture / picture_height_pixels as f32
+    }
+}
+
+/// Lists that keep their memory from frame to frame.
+#[derive(Debug, Default)]
+pub(crate) struct FootprintScratch {
+    points: Vec<DVec2>,
+    hull: Vec<DVec2>,
+}
+
+/// A cascade of a camera's view.
+pub(crate) struct Slice<'a> {
+    pub camera: &'a CameraFrustum,
+    pub visible: &'a SeenBounds,
+    pub between: (f64, f64),
+}
+
+impl Slice<'_> {
+    /// How `window` covers it.
+    pub fn report(
+        &self,
+        axes: &LightAxes,
+        origin: DVec3,
+        window: &MapWindow,
+        scratch: &mut FootprintScratch,
+    ) -> SliceReport {
+        let (near, far) = self.between;
+        let mut region = self.camera.slice(near, far);
+        push_column(&mut region, axes, origin, window);
+        let visible = Aabb::new(
+            self.visible.render_min.as_vec3(),
+            self.visible.render_max.as_vec3(),
+        );
+        // Relative to the window, so that nothing is lost to a distant origin.
+        scratch.points.clear();
+        region.visit_vertices(&visible, |vertex| {
+            let light = axes.light_from_world * (origin + vertex);
+            scratch.points.push(light.truncate() - window.min);
+        });
+        let size = window.max() - window.min;
+        let share = hull_area(scratch) / (size.x * size.y);
+        let height = |depth| self.camera.picture_height(depth);
+        let texels = DVec2::new(
+            height(near) / window.texel.max_element(),
+            height(far) / window.texel.min_element(),
+        );
+        SliceReport {
+            depth_near: near as f32,
+            depth_far: far as f32,
+            share_of_map: share.clamp(0.0, 1.0) as f32,
+            texels_across_picture: texels.as_vec2(),
+        }
+    }
+}
+
+/// Adds the four sides of a window, in render space.
+pub(crate) fn push_column(
+    region: &mut HalfSpaces,
+    axes: &LightAxes,
+    origin: DVec3,
+    plane: &MapWindow,
+) {
+    let (min, max) = (plane.min, plane.max());
+    for (axis, low, high) in [(axes.right(), min.x, max.x), (axes.up(), min.y, max.y)] {
+        let origin = axis.dot(origin);
+        region.push(HalfSpace {
+            normal: axis,
+            offset: origin - low,
+        });
+        region.push(HalfSpace {
+            normal: -axis,
+            offset: high - origin,
+        });
+    }
+}
+
+/// Area of the convex hull of `scratch.points` (Andrew's monotone chain, 1979).
+fn hull_area(scratch: &mut FootprintScratch) -> f64 {
+    let FootprintScratch { points, hull } = scratch;
+    points.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    hull.clear();
+    let turns_left = |hull: &[DVec2], next: DVec2| match hull {
+        [.., a, b] => (*b - *a).perp_dot(next - *b) > 0.0,
+        _ => true,
+    };
+    // The lower chain from left to right, then the upper one back; the second never takes points of the first away.
+    for &point in points.iter() {
+        while hull.len() >= 2 && !turns_left(hull, point) {
+            hull.pop();
+        }
+        hull.push(point);
+    }
+    let lower = hull.len();
+    for &point in points.iter().rev().skip(1) {
+        while hull.len() > lower && !turns_left(hull, point) {
+            hull.pop();
+        }
+        hull.push(point);
+    }
+    let next = hull.iter().skip(1).chain(hull.first());
+    hull.iter()
+        .zip(next)
+        .map(|(a, b)| a.perp_dot(*b))
+        .sum::<f64>()
+        * 0.5
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn area(points: &[(f64, f64)]) -> f64 {
+        let mut scratch = FootprintScratch {
+            points: points.iter().map(|&p| p.into()).collect(),
+            hull: Vec::new(),
+        };
+        hull_area(&mut scratch)
+    }
+
+    #[test]
+    fn hulls_have_the_areas_of_their_figures() {
+        let square = [
+            (0.0, 0.0),
+            (2.0, 2.0),
+            (0.0, 2.0),
+            (1.0, 1.0),
+            (2.0, 0.0),
+            (1.0, 0.0),
+        ];
+        assert_eq!(area(&square), 4.0);
+        assert_eq!(area(&[(0.0, 0.0), (3.0, 0.0), (0.0, 4.0), (0.0, 4.0)]), 6.0);
+        // A hexagon of side 1.
+        let hexagon: Vec<_> = (0..6)
+            .map(|corner| f64::from(corner) * std::f64::consts::FRAC_PI_3)
+            .map(|angle| (angle.cos(), angle.sin()))
+            .collect();
+        assert!((area(&hexagon) - 1.5 * 3.0_f64.sqrt()).abs() < 1e-12);
+        // Figures without area, down to none at all.
+        for flat in [
+            &[][..],
+            &[(1.0, 2.0)],
+            &[(0.0, 0.0), (1.0, 1.0), (2.0, 2.0)],
+        ] {
+            assert_eq!(area(flat), 0.0, "{flat:?}");
+        }
+    }
+}

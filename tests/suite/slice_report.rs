@@ -1,0 +1,131 @@
+//! What the report says of a cascade's slice: how much of the map falls on it, and how finely.
+
+use glam::{DVec3, Vec3};
+use wgpu_shadows::{
+    Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    ShadowReport, Stability,
+};
+
+use crate::support::camera::{Camera, Lens};
+use crate::support::gpu::gpu;
+use crate::support::probe::record;
+use crate::support::random::Random;
+use crate::support::scene::{Mesh, Scene};
+
+fn report(
+    scene: &Scene,
+    camera: &Camera,
+    light: Vec3,
+    descriptor: &DirectionalShadowDescriptor<'_>,
+) -> ShadowReport {
+    let mut shadow = DirectionalShadow::new(&gpu().device, descriptor).expect("a valid sun");
+    let frame = DirectionalFrame {
+        origin: DVec3::ZERO,
+        light: DirectionalLight::new(light),
+        coverage: Coverage::Camera(camera.view().with_max_distance(200.0)),
+        casters: &scene.list(),
+        receivers: &[],
+    };
+    record(gpu(), &mut shadow, &frame)
+}
+
+/// An orthographic picture of 6 by 4 from straight above, the light along the view: the slice's footprint is the picture, and
+/// a texel is as large on it as on the map. f32 rounds the report (2^-24 of it), and the camera's matrix its 2^-24 of the
+/// distance of 30.
+#[test]
+fn a_picture_from_the_light_is_its_own_footprint() {
+    let scene = Scene::new(
+        gpu(),
+        &[
+            Mesh::cuboid(Vec3::new(-9.0, 1.0, -9.0), Vec3::new(9.0, 2.0, 9.0)),
+            Mesh::floor(0.0, 20.0),
+        ],
+    );
+    let mut camera = Camera::modern(
+        DVec3::new(0.2, 30.0, 0.3),
+        DVec3::new(0.2, 0.0, 0.299),
+        1.0,
+        1.5,
+    );
+    camera.lens = Lens::Orthographic {
+        sides: [-3.0, 3.0, -2.0, 2.0],
+        near: 0.0,
+        far: 100.0,
+    };
+    camera.pose.axes = glam::DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y);
+    let report = report(
+        &scene,
+        &camera,
+        Vec3::NEG_Y,
+        &DirectionalShadowDescriptor {
+            map_size: 256,
+            ..Default::default()
+        },
+    );
+    let view = &report.views[0];
+    let slice = view.slice.expect("a camera's slice");
+    let map = view.texel_size_world * 256.0;
+    let wanted = 6.0 * 4.0 / (map.x * map.y);
+    assert!(
+        (slice.share_of_map - wanted).abs() < 1e-5,
+        "{slice:?} {wanted}"
+    );
+    let texels = 4.0 / view.texel_size_world;
+    let across = slice.texels_across_picture;
+    assert!(
+        (across.x - texels.min_element()).abs() < 1e-3,
+        "{across} {texels}"
+    );
+    assert!(
+        (across.y - texels.max_element()).abs() < 1e-3,
+        "{across} {texels}"
+    );
+    assert_eq!(slice.texels_per_pixel(512), across / 512.0);
+    // The slab's top, two above the floor, is the nearest that is seen; the floor the farthest.
+    assert!((slice.depth_near - 28.0).abs() < 1e-4 && (slice.depth_far - 30.0).abs() < 1e-4);
+}
+
+/// Through a town, at least half of the texels of the fitted maps fall on their slices, on average over places and cascades,
+/// and a sphere around each slice leaves less than half of that.
+#[test]
+fn fitted_maps_waste_less_than_half() {
+    let mut random = Random::new(41);
+    let mut meshes = vec![Mesh::floor(0.0, 150.0)];
+    for index in 0..100 {
+        let cell = DVec3::new(f64::from(index % 10 - 5), 0.0, f64::from(index / 10 - 5)) * 26.0;
+        let low = cell + random.point(DVec3::new(3.0, 0.0, 3.0), DVec3::new(7.0, 0.0, 7.0));
+        let size = random.point(DVec3::new(7.0, 4.0, 7.0), DVec3::new(14.0, 22.0, 14.0));
+        meshes.push(Mesh::cuboid(low.as_vec3(), (low + size).as_vec3()));
+    }
+    let scene = Scene::new(gpu(), &meshes);
+    let mut shares = [0.0_f32; 2];
+    let mut count = 0;
+    for _ in 0..20 {
+        let eye = random.point(DVec3::new(-60.0, 1.7, -60.0), DVec3::new(60.0, 1.7, 60.0));
+        let way = random.direction().with_y(-0.05);
+        let camera = Camera::modern(eye, eye + way, 1.0, 16.0 / 9.0);
+        let both = [Stability::Rungs, Stability::Rotation].map(|stability| {
+            report(
+                &scene,
+                &camera,
+                Vec3::new(0.37, -1.0, 0.21),
+                &DirectionalShadowDescriptor {
+                    map_size: 256,
+                    cascades: 4,
+                    stability,
+                    ..Default::default()
+                },
+            )
+        });
+        for (fitted, sphere) in both[0].views.iter().zip(&both[1].views) {
+            if let (Some(fitted), Some(sphere)) = (fitted.slice, sphere.slice) {
+                shares[0] += fitted.share_of_map;
+                shares[1] += sphere.share_of_map;
+                count += 1;
+            }
+        }
+    }
+    assert!(count >= 40, "{count} cascades");
+    let [fitted, sphere] = shares.map(|share| share / count as f32);
+    assert!(fitted >= 0.5 && sphere <= 0.25, "{fitted} {sphere}");
+}
