@@ -5,7 +5,8 @@ use glam::{DVec3, Vec3};
 use crate::cast::{ShadowCaster, ViewDraws};
 use crate::check;
 use crate::fit::{
-    CameraFrustum, DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, MAX_CASCADES, Region,
+    CameraFrustum, Column, DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes,
+    MAX_CASCADES, Region,
 };
 use crate::light_maps::{LayerBase, LightMaps, LightMapsDescriptor, MapsFrame, light_maps_getters};
 use crate::receive::{Sampling, Selection};
@@ -282,13 +283,15 @@ impl DirectionalShadow {
         let mut views = self.maps.spare_views();
         for (layer, window) in windows.iter().enumerate() {
             let Some(window) = window else { continue };
+            let column = Column::new(axes, origin, &window.plane);
             let mut casters = self.maps.spare_list();
-            casters.extend(
-                (0u32..)
-                    .zip(&self.scratch.casters)
-                    .filter(|(_, caster)| caster.can_shadow && window.holds_part_of(&caster.light))
-                    .map(|(index, _)| index),
-            );
+            let all = (0u32..).zip(self.scratch.casters.iter().zip(&self.bounds));
+            casters.extend(all.filter_map(|(index, (caster, bounds))| {
+                let marks = caster.can_shadow
+                    && window.holds_part_of(&caster.light)
+                    && column.meets(bounds);
+                marks.then_some(index)
+            }));
             let view = ShadowView::orthographic(axes, window, origin, layer as u32).checked()?;
             views.push(ViewDraws::new(view, casters));
         }

@@ -330,6 +330,7 @@ fn make_maps(
                 label: Some("sun"),
                 map_size: options.map_size.unwrap_or(2048),
                 cascades: options.cascades,
+                split: options.split(),
                 filter: options.sun_filter(),
                 bias: options.bias,
                 ..Default::default()

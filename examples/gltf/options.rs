@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, ValueEnum};
-use wgpu_shadows::{Bias, Filter};
+use wgpu_shadows::{Bias, CascadeSplit, Filter};
 
 /// Renders a glTF 2.0 file with shadows, offscreen, to a PNG.
 #[derive(Parser, Debug)]
@@ -36,6 +36,9 @@ pub struct Options {
     /// Cascades of a directional light, 1 to 8.
     #[arg(long, default_value_t = 1)]
     pub cascades: u32,
+    /// Depths along the view at which all cascades but the last end, as in 10,30,80; equal ratios without it.
+    #[arg(long, value_delimiter = ',', num_args = 1..=7)]
+    pub splits: Vec<f32>,
     /// Distance along the view beyond which nothing is shadowed.
     #[arg(long, default_value_t = f32::INFINITY)]
     pub max_distance: f32,
@@ -57,6 +60,17 @@ pub struct Options {
 }
 
 impl Options {
+    /// Where the cascades end; `--splits` is for as many as it says.
+    pub fn split(&self) -> CascadeSplit {
+        if self.splits.is_empty() {
+            return CascadeSplit::Logarithmic;
+        }
+        let end = |index| self.splits.get(index).copied().unwrap_or(f32::INFINITY);
+        CascadeSplit::Explicit {
+            ends: std::array::from_fn(end),
+        }
+    }
+
     /// The filter of directional lights.
     pub fn sun_filter(&self) -> Filter {
         self.angular_diameter

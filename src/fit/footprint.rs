@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3, Vec2};
 use crate::Aabb;
 use crate::fit::LightAxes;
 use crate::fit::camera::CameraFrustum;
-use crate::fit::region::{HalfSpace, HalfSpaces};
+use crate::fit::column::push_column;
 use crate::fit::visible::SeenBounds;
 use crate::fit::window::MapWindow;
 
@@ -81,27 +81,6 @@ impl Slice<'_> {
             share_of_map: share.clamp(0.0, 1.0) as f32,
             texels_across_picture: texels.as_vec2(),
         }
-    }
-}
-
-/// Adds the four sides of a window, in render space.
-pub(crate) fn push_column(
-    region: &mut HalfSpaces,
-    axes: &LightAxes,
-    origin: DVec3,
-    plane: &MapWindow,
-) {
-    let (min, max) = (plane.min, plane.max());
-    for (axis, low, high) in [(axes.right(), min.x, max.x), (axes.up(), min.y, max.y)] {
-        let origin = axis.dot(origin);
-        region.push(HalfSpace {
-            normal: axis,
-            offset: origin - low,
-        });
-        region.push(HalfSpace {
-            normal: -axis,
-            offset: high - origin,
-        });
     }
 }
 

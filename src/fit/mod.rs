@@ -10,6 +10,7 @@
 //! split.rs        where one cascade ends and the next begins
 //! stability.rs    extents that no motion of the camera changes
 //! visible.rs      what a camera sees of the receivers
+//! column.rs       what reaches into the space over a window
 //! directional.rs  all of it put together for a sun
 //! local.rs        the same for the views of a spot or point light
 //! view.rs         ShadowView: the value that the upper floors render and sample with
@@ -17,6 +18,7 @@
 
 mod axes;
 mod camera;
+mod column;
 mod directional;
 mod footprint;
 mod ladder;
@@ -32,6 +34,7 @@ pub use axes::LightAxes;
 pub(crate) use axes::LightBox;
 pub(crate) use camera::CameraFrustum;
 pub use camera::CameraView;
+pub(crate) use column::Column;
 pub(crate) use directional::{
     DirectionalFit, FitInput, FitLimits, FitScratch, MAX_CASCADES, Region,
 };
