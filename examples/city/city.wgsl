@@ -42,6 +42,21 @@ fn fragment(surface: Surface) -> @location(0) vec4<f32> {
     return vec4<f32>(in_the_haze(lit_town(surface, normal), surface.position), 1.0);
 }
 
+// Texels of its map that a pixel covers along its longer side: (log2 + 8) / 16, and 0 where no map serves it.
+@fragment
+fn fragment_density(surface: Surface) -> @location(0) vec4<f32> {
+    let across = dpdx(surface.position);
+    let down = dpdy(surface.position);
+    let view = shadow_view_sun(surface.position);
+    if view == 4u {
+        return vec4<f32>(0.0);
+    }
+    let texels_across = shadow_views_sun[view].texel_from_anchor * vec4<f32>(across, 0.0);
+    let texels_down = shadow_views_sun[view].texel_from_anchor * vec4<f32>(down, 0.0);
+    let texels = max(length(texels_across.xy), length(texels_down.xy));
+    return vec4<f32>(clamp((log2(texels) + 8.0) / 16.0, 1.0 / 255.0, 1.0), 0.0, 0.0, 1.0);
+}
+
 @fragment
 fn fragment_cascades(surface: Surface) -> @location(0) vec4<f32> {
     var tints = array<vec3<f32>, 5>(

@@ -11,6 +11,7 @@
 //! building.rs      a building as a caster
 //! flight.rs        where the camera is
 //! sun.rs           the sun's shadows, and the pictures that they are in
+//! density.rs       how many texels a pixel covers
 //! table.rs         what the frames cost
 //! city.wgsl        the fragment stages
 //! ../common        device, meshes and Blinn-Phong
@@ -19,6 +20,7 @@
 mod building;
 #[path = "../common/mod.rs"]
 mod common;
+mod density;
 mod flight;
 mod plot;
 mod random;
@@ -78,6 +80,9 @@ fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
         let pixels = sun.draw(&gpu, &town, &camera, &casters, Show::Scene)?;
         save(&format!("frame-{frame:03}.png"), &pixels, SIZE)?;
         print!("{}", table.add(sun.report(), sun.record_time()));
+        if let Some(density) = sun.density(&gpu, &town, &camera)? {
+            println!("    {density}");
+        }
     }
     let count = table.frames();
     println!(

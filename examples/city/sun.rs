@@ -14,6 +14,7 @@ use crate::common::camera::Camera;
 use crate::common::gpu::Gpu;
 use crate::common::phong::{Lighting, Phong, PhongDescriptor, Picture};
 use crate::common::{map_picture, picture};
+use crate::density::Density;
 use crate::town::Town;
 
 /// Texels per side of each cascade.
@@ -45,6 +46,7 @@ pub struct Sun {
     bindings: ShadowBindings,
     scene: Phong,
     cascades: Phong,
+    density: Phong,
     record_time: Duration,
 }
 
@@ -66,7 +68,7 @@ impl Sun {
                 ..Default::default()
             },
         )?;
-        let phong = |fragment_entry| {
+        let phong = |fragment_entry, format| {
             Phong::new(
                 gpu,
                 &PhongDescriptor {
@@ -75,14 +77,15 @@ impl Sun {
                     fragment_entry,
                     shadow_group: bindings.group(),
                     shadow_layout: bindings.layout(),
-                    format: FORMAT,
+                    format,
                     sample_count: 1,
                 },
             )
         };
         Ok(Self {
-            scene: phong("fragment"),
-            cascades: phong("fragment_cascades"),
+            scene: phong("fragment", FORMAT),
+            cascades: phong("fragment_cascades", FORMAT),
+            density: phong("fragment_density", wgpu::TextureFormat::Rgba8Unorm),
             shadow,
             bindings,
             record_time: Duration::ZERO,
@@ -120,13 +123,6 @@ impl Sun {
         self.shadow.record(&gpu.device, &mut encoder, &frame)?;
         self.record_time = start.elapsed();
 
-        let lighting = Lighting {
-            light: TOWARD_SUN.normalize().extend(0.0),
-            light_color: Vec3::new(1.15, 1.0, 0.80),
-            light_range: f32::INFINITY,
-            ambient: Vec3::new(0.14, 0.18, 0.25),
-            sky: Vec3::new(0.45, 0.58, 0.75),
-        };
         let target = gpu.target(FORMAT, DRAWN_SIZE, 1);
         let phong = match show {
             Show::Scene => &self.scene,
@@ -137,13 +133,39 @@ impl Sun {
             &mut encoder,
             &Picture {
                 camera,
-                lighting: &lighting,
+                lighting: &lighting(),
                 shadows: self.bindings.bind_group(),
                 target: &target,
             },
             town.batches(),
         );
         Ok(picture::halved(&gpu.read(encoder, &target)?, DRAWN_SIZE))
+    }
+
+    /// How many texels the pixels of the last picture cover, as `camera` took it.
+    pub fn density(
+        &self,
+        gpu: &Gpu,
+        town: &Town,
+        camera: &Camera,
+    ) -> Result<Option<Density>, Box<dyn Error>> {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let target = gpu.target(wgpu::TextureFormat::Rgba8Unorm, crate::SIZE, 1);
+        self.density.draw(
+            gpu,
+            &mut encoder,
+            &Picture {
+                camera,
+                lighting: &Lighting {
+                    sky: Vec3::ZERO,
+                    ..lighting()
+                },
+                shadows: self.bindings.bind_group(),
+                target: &target,
+            },
+            town.batches(),
+        );
+        Ok(Density::of(&gpu.read(encoder, &target)?))
     }
 
     /// The map of one cascade as the last frame left it.
@@ -156,5 +178,16 @@ impl Sun {
         let encoder = gpu.device.create_command_encoder(&Default::default());
         let layer = DebugPicture::Layer(layer);
         map_picture::draw(gpu, encoder, self.shadow.source(), layer, size)
+    }
+}
+
+/// A late afternoon.
+fn lighting() -> Lighting {
+    Lighting {
+        light: TOWARD_SUN.normalize().extend(0.0),
+        light_color: Vec3::new(1.15, 1.0, 0.80),
+        light_range: f32::INFINITY,
+        ambient: Vec3::new(0.14, 0.18, 0.25),
+        sky: Vec3::new(0.45, 0.58, 0.75),
     }
 }
