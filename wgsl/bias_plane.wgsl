@@ -16,7 +16,9 @@ fn shadow_receiver_plane(view: ShadowView, position: vec3<f32>, normal: vec3<f32
     // Never past the light: under the widest cones a texel is larger than the light's height over the surface.
     let offset = min(wanted, 0.5 * shadow_light_height(view, relative, normal));
     let lifted = relative + normal * offset;
-    let plane = shadow_plane(view, lifted, normal);
+    // The surface's plane moved by the offset: of (normal, -normal · point) only the last component changes.
+    let moved = offset * dot(normal, normal);
+    let plane = surface - moved * vec3<f32>(view.plane_across.w, view.plane_down.w, view.plane_depth.w);
     // A plane seen edge on has no gradient, and neither has a normal that is zero or not a number.
     if !(abs(plane.z) > 0.0) {
         return shadow_receiver_at(view, position, relative, vec2<f32>(0.0), view.depth_error);

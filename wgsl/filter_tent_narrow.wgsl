@@ -11,15 +11,14 @@ fn shadow_filter_tent_narrow(
     let base = floor(from_centers);
     let s = from_centers - base;
     let first = base - 1.0;
-    // Weights of pairs of texels along each axis, times four.
-    var across = array<vec2<f32>, 2>(vec2<f32>(1.0 - s.x, 2.0 - s.x), vec2<f32>(1.0 + s.x, s.x));
-    var down = array<vec2<f32>, 2>(vec2<f32>(1.0 - s.y, 2.0 - s.y), vec2<f32>(1.0 + s.y, s.y));
-    var lit = 0.0;
-    for (var y = 0u; y < 2u; y++) {
-        for (var x = 0u; x < 2u; x++) {
-            let block = shadow_gather(map, map_sampler, receiver, first + 2.0 * vec2<f32>(vec2<u32>(x, y)));
-            lit += dot(block, vec4<f32>(across[x] * down[y].x, across[x] * down[y].y));
-        }
-    }
+    // Weights of pairs of texels along each axis, times four. Written out: a loop would be bounded and not be unrolled.
+    let left = vec2<f32>(1.0 - s.x, 2.0 - s.x);
+    let right = vec2<f32>(1.0 + s.x, s.x);
+    let upper = vec2<f32>(1.0 - s.y, 2.0 - s.y);
+    let lower = vec2<f32>(1.0 + s.y, s.y);
+    let lit = dot(shadow_gather(map, map_sampler, receiver, first), vec4<f32>(left * upper.x, left * upper.y))
+        + dot(shadow_gather(map, map_sampler, receiver, first + vec2<f32>(2.0, 0.0)), vec4<f32>(right * upper.x, right * upper.y))
+        + dot(shadow_gather(map, map_sampler, receiver, first + vec2<f32>(0.0, 2.0)), vec4<f32>(left * lower.x, left * lower.y))
+        + dot(shadow_gather(map, map_sampler, receiver, first + 2.0), vec4<f32>(right * lower.x, right * lower.y));
     return shadow_sharpen(lit / 16.0, receiver.sharpness);
 }
