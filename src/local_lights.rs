@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use crate::cast::{ShadowCaster, ViewDraws};
 use crate::check;
-use crate::fit::{CameraFrustum, LightAxes, LocalFit, LocalInput, MAX_LOCAL_VIEWS};
+use crate::fit::{CameraFrustum, LightAxes, LocalFit, LocalInput, MAX_LOCAL_VIEWS, Reached};
 use crate::light_maps::{LayerBase, LightMaps, MapsFrame};
 use crate::{Aabb, CameraView, ShadowError, ShadowReport, ShadowView};
 
@@ -17,6 +17,7 @@ pub(crate) struct LocalLights {
     /// Empty between frames; kept for their memory.
     candidates: Vec<Candidate>,
     layers: Vec<LayerBase>,
+    reached: Reached,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -85,6 +86,7 @@ impl LocalLights {
             bounds: Vec::new(),
             candidates: Vec::new(),
             layers: Vec::new(),
+            reached: Reached::default(),
         }
     }
 
@@ -179,7 +181,7 @@ impl LocalLights {
 
     /// Fits and culls one light.
     fn candidate(
-        &self,
+        &mut self,
         maps: &mut LightMaps,
         frame: &LocalFrame<'_>,
         light: &LocalPlacement,
@@ -202,7 +204,8 @@ impl LocalLights {
             margin_texels: maps.sampling().margin_texels(),
         };
         let mut drawn: [Vec<u32>; MAX_LOCAL_VIEWS] = std::array::from_fn(|_| maps.spare_list());
-        let fit = self.slots[light.slot as usize].fit.fit(&input, &mut drawn);
+        let held = &self.slots[light.slot as usize].fit;
+        let fit = held.fit(&input, &mut self.reached, &mut drawn);
         let mut views = [const { None }; MAX_LOCAL_VIEWS];
         let mut needed = 0;
         for (index, casters) in drawn.into_iter().enumerate() {

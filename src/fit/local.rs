@@ -8,7 +8,8 @@ use glam::{DVec2, DVec3};
 use crate::Aabb;
 use crate::fit::axes::LightAxes;
 use crate::fit::camera::CameraFrustum;
-use crate::fit::region::{HalfSpace, HalfSpaces};
+use crate::fit::reached::{self, Reached};
+use crate::fit::region::{HalfSpace, HalfSpaces, Relation};
 use crate::fit::window::{MapWindow, WindowRequest};
 
 /// Most views of one local light.
@@ -55,18 +56,22 @@ pub(crate) struct LocalFit {
     pub reach: f64,
 }
 
-/// A rectangle of tangents and the nearest distance along the axis.
+/// A rectangle of tangents.
 struct Extent {
     min: DVec2,
     max: DVec2,
-    nearest: f64,
 }
 
 impl LocalFit {
     /// The windows for this frame; `drawn` is filled with the indices of the casters of each view.
-    pub fn fit(&self, input: &LocalInput<'_>, drawn: &mut [Vec<u32>]) -> Self {
+    pub fn fit(
+        &self,
+        input: &LocalInput<'_>,
+        reached: &mut Reached,
+        drawn: &mut [Vec<u32>],
+    ) -> Self {
         let light = input.position_world - input.origin;
-        let reach = reach(input, light);
+        let reach = reached::reach(input, light);
         let mut next = Self {
             windows: [None; MAX_LOCAL_VIEWS],
             reach,
@@ -79,37 +84,12 @@ impl LocalFit {
             return next;
         }
         let nearest = reach * NEAREST_SHARE;
-        let within = within_reach(light, reach);
-        let visible = visible_bounds(input, &within);
-        let casts = |caster: &Aabb| can_shadow(caster, &visible, light);
+        reached.find(input, light, reach);
         for (index, axes) in input.views.iter().enumerate() {
             let view = ViewFrame { axes, light };
-            let square =
-                |tangent: f64| view.region(DVec2::splat(-tangent), DVec2::splat(tangent), nearest);
-            let field = square(input.caster_tangent);
-            let mut seen = square(input.receiver_tangent);
-            if let Some(camera) = input.camera {
-                camera
-                    .planes
-                    .as_slice()
-                    .iter()
-                    .for_each(|plane| seen.push(*plane));
-            }
-            let casters = input.casters.iter().filter(|caster| casts(caster));
-            let Some(cast) = view.extent(&field, casters.map(|c| intersection(c, &within))) else {
+            let Some((min, max)) = view.needed(input, reached, nearest) else {
                 continue;
             };
-            let (mut min, mut max) = (cast.min, cast.max);
-            if !input.looks_around {
-                let receivers = input.casters.iter().chain(input.receivers);
-                let received = view.extent(&seen, receivers.map(|r| intersection(r, &within)));
-                let Some(received) = received else { continue };
-                min = min.max(received.min);
-                max = max.min(received.max);
-            }
-            if min.cmpgt(max).any() {
-                continue;
-            }
             let window = MapWindow::fit(
                 &WindowRequest {
                     min,
@@ -122,14 +102,10 @@ impl LocalFit {
                 self.held[index].as_ref(),
             );
             let region = view.region(window.min, window.max(), nearest);
-            for (caster, bounds) in (0u32..).zip(input.casters) {
-                let clipped = intersection(bounds, &within);
-                if !casts(bounds) {
-                    continue;
-                }
-                if let Some(extent) = view.extent(&region, [clipped]) {
-                    drawn[index].push(caster);
-                    next.near = next.near.min(extent.nearest);
+            for caster in &reached.casters {
+                if let Some(distance) = view.nearest_within(&region, &caster.bounds) {
+                    drawn[index].push(caster.index);
+                    next.near = next.near.min(distance);
                 }
             }
             if !drawn[index].is_empty() {
@@ -156,10 +132,39 @@ struct ViewFrame<'a> {
 }
 
 impl ViewFrame<'_> {
+    /// The rectangle of tangents that both casters and receivers cover; none for nothing.
+    fn needed(
+        &self,
+        input: &LocalInput<'_>,
+        reached: &Reached,
+        nearest: f64,
+    ) -> Option<(DVec2, DVec2)> {
+        let square =
+            |tangent: f64| self.region(DVec2::splat(-tangent), DVec2::splat(tangent), nearest);
+        let casters = reached.casters.iter().map(|caster| &caster.bounds);
+        let cast = self.extent(&square(input.caster_tangent), casters)?;
+        if input.looks_around {
+            return Some((cast.min, cast.max));
+        }
+        let mut seen = square(input.receiver_tangent);
+        if let Some(camera) = input.camera {
+            let planes = camera.planes.as_slice().iter();
+            planes.for_each(|plane| seen.push(*plane));
+        }
+        let received = self.extent(&seen, reached.receivers.iter())?;
+        let (min, max) = (cast.min.max(received.min), cast.max.min(received.max));
+        min.cmple(max).all().then_some((min, max))
+    }
+
     /// The pyramid over a rectangle of tangents, from `nearest` along the axis on.
     fn region(&self, min: DVec2, max: DVec2, nearest: f64) -> HalfSpaces {
         let (right, up, forward) = (self.axes.right(), self.axes.up(), -self.axes.toward_light());
         let mut region = HalfSpaces::default();
+        // The near side first: it sorts out half of everything.
+        region.push(HalfSpace {
+            normal: forward,
+            offset: -forward.dot(self.light) - nearest,
+        });
         for side in [
             right - forward * min.x,
             forward * max.x - right,
@@ -172,87 +177,79 @@ impl ViewFrame<'_> {
                 offset: -normal.dot(self.light),
             });
         }
-        region.push(HalfSpace {
-            normal: forward,
-            offset: -forward.dot(self.light) - nearest,
-        });
         region
     }
 
     /// What of the boxes lies in the region, in tangents; none for nothing.
-    fn extent(&self, region: &HalfSpaces, boxes: impl IntoIterator<Item = Aabb>) -> Option<Extent> {
+    fn extent<'b>(
+        &self,
+        region: &HalfSpaces,
+        boxes: impl Iterator<Item = &'b Aabb>,
+    ) -> Option<Extent> {
         let mut extent = Extent {
             min: DVec2::INFINITY,
             max: DVec2::NEG_INFINITY,
-            nearest: f64::INFINITY,
         };
         for bounds in boxes {
-            region.visit_vertices(&bounds, |vertex| {
+            if region.relation(bounds) == Relation::Outside || extent.holds(&self.span(bounds)) {
+                continue;
+            }
+            region.visit_vertices(bounds, |vertex| {
                 let local = self.axes.light_from_world * (vertex - self.light);
-                let distance = -local.z;
-                let tangents = local.truncate() / distance;
+                let tangents = local.truncate() / -local.z;
                 extent.min = extent.min.min(tangents);
                 extent.max = extent.max.max(tangents);
-                extent.nearest = extent.nearest.min(distance);
             });
         }
         extent.min.cmple(extent.max).all().then_some(extent)
     }
-}
 
-/// How far the light matters: its range, or the farthest corner of anything where the range goes beyond.
-fn reach(input: &LocalInput<'_>, light: DVec3) -> f64 {
-    input
-        .casters
-        .iter()
-        .chain(input.receivers)
-        .filter(|bounds| !bounds.is_empty())
-        .map(|bounds| {
-            let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
-            (light - min).abs().max((light - max).abs()).length()
-        })
-        .fold(0.0, f64::max)
-        .min(input.range)
-}
-
-/// The box around the sphere that the light reaches, rounded outward to f32.
-fn within_reach(light: DVec3, reach: f64) -> Aabb {
-    let outward = reach * (1.0 + 1e-6) + light.abs().max_element() * 1e-6;
-    Aabb::new((light - outward).as_vec3(), (light + outward).as_vec3())
-}
-
-fn intersection(a: &Aabb, b: &Aabb) -> Aabb {
-    Aabb::new(a.min.max(b.min), a.max.min(b.max))
-}
-
-/// Bounds of the receivers that the light reaches and the camera, if any, sees.
-fn visible_bounds(input: &LocalInput<'_>, within: &Aabb) -> (DVec3, DVec3) {
-    let all = HalfSpaces::default();
-    let seen = input.camera.map_or(&all, |camera| &camera.planes);
-    let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for bounds in input.casters.iter().chain(input.receivers) {
-        seen.visit_vertices(&intersection(bounds, within), |vertex| {
-            min = min.min(vertex);
-            max = max.max(vertex);
-        });
-    }
-    (min, max)
-}
-
-/// Can a shadow of `caster` fall on anything in `visible`? Shadows lead away from the light: on an axis on which the light lies
-/// to one side of the caster, some receiver must lie beyond the caster's near side. The flat wall of a room fails this.
-fn can_shadow(caster: &Aabb, visible: &(DVec3, DVec3), light: DVec3) -> bool {
-    let (low, high) = (caster.min.as_dvec3(), caster.max.as_dvec3());
-    !caster.is_empty()
-        && (0..3).all(|axis| {
-            if light[axis] < low[axis] {
-                visible.1[axis] > low[axis]
-            } else if light[axis] > high[axis] {
-                visible.0[axis] < high[axis]
-            } else {
-                true
+    /// The least distance along the axis of what of a box lies in the region; none where nothing does.
+    fn nearest_within(&self, region: &HalfSpaces, bounds: &Aabb) -> Option<f64> {
+        match region.relation(bounds) {
+            Relation::Outside => None,
+            Relation::Inside => Some(self.span(bounds).nearest),
+            Relation::Across => {
+                let mut nearest = f64::INFINITY;
+                region.visit_vertices(bounds, |vertex| {
+                    let distance = self.axes.toward_light().dot(self.light - vertex);
+                    nearest = nearest.min(distance);
+                });
+                (nearest < f64::INFINITY).then_some(nearest)
             }
-        })
+        }
+    }
+
+    /// The box's intervals on the view's axes, from the light.
+    fn span(&self, bounds: &Aabb) -> Span {
+        let local = self.axes.light_box(bounds, -self.light);
+        Span {
+            min: local.min.truncate(),
+            max: local.max.truncate(),
+            nearest: -local.max.z,
+            farthest: -local.min.z,
+        }
+    }
+}
+
+/// A box's intervals across the view, and along it away from the light.
+struct Span {
+    min: DVec2,
+    max: DVec2,
+    nearest: f64,
+    farthest: f64,
+}
+
+impl Extent {
+    /// Do all tangents of the box lie within these already?
+    fn holds(&self, span: &Span) -> bool {
+        let at = |across: DVec2| (across / span.nearest, across / span.farthest);
+        let (low_near, low_far) = at(span.min);
+        let (high_near, high_far) = at(span.max);
+        span.nearest > 0.0
+            && self.min.cmple(low_near.min(low_far)).all()
+            && self.max.cmpge(high_near.max(high_far)).all()
+    }
 }
 
 /// Finest texel, as a tangent: four ulps of f32 at the light's render coordinates seen from the end of its reach, and at least

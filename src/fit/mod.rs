@@ -12,6 +12,7 @@
 //! visible.rs      what a camera sees of the receivers
 //! column.rs       what reaches into the space over a window
 //! directional.rs  all of it put together for a sun
+//! reached.rs      what a local light reaches
 //! local.rs        the same for the views of a spot or point light
 //! view.rs         ShadowView: the value that the upper floors render and sample with
 //! ```
@@ -23,6 +24,7 @@ mod directional;
 mod footprint;
 mod ladder;
 mod local;
+mod reached;
 mod region;
 mod split;
 mod stability;
@@ -40,6 +42,7 @@ pub(crate) use directional::{
 };
 pub use footprint::SliceReport;
 pub(crate) use local::{LocalFit, LocalInput, MAX_LOCAL_VIEWS};
+pub(crate) use reached::Reached;
 pub use split::CascadeSplit;
 pub use stability::Stability;
 pub use view::ShadowView;

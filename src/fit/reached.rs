@@ -1,0 +1,116 @@
+//! What a local light reaches: found once a frame, then divided among its views.
+
+use glam::DVec3;
+
+use crate::Aabb;
+use crate::fit::local::LocalInput;
+use crate::fit::region::{HalfSpaces, Relation};
+
+/// The casters and receivers within a light's reach. Lists keep their memory from frame to frame.
+#[derive(Debug, Default)]
+pub(crate) struct Reached {
+    /// Casters that can shadow something.
+    pub casters: Vec<ReachedCaster>,
+    /// What of casters and receivers the light reaches.
+    pub receivers: Vec<Aabb>,
+}
+
+/// A caster that a light reaches.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ReachedCaster {
+    /// In the engine's list.
+    pub index: u32,
+    /// What of it lies within the box around the light's reach.
+    pub bounds: Aabb,
+}
+
+impl Reached {
+    /// Takes on what `input` brings, for a light at `light` in render space.
+    pub fn find(&mut self, input: &LocalInput<'_>, light: DVec3, reach: f64) {
+        // Outward, for the rounding of boxes to f32.
+        let outward = reach * (1.0 + 1e-6) + light.abs().max_element() * 1e-6;
+        let around = Aabb::new((light - outward).as_vec3(), (light + outward).as_vec3());
+        let near = |bounds: &Aabb| {
+            let part = intersection(bounds, &around);
+            (!part.is_empty() && distance_squared(&part, light) <= outward * outward)
+                .then_some(part)
+        };
+        self.casters.clear();
+        self.receivers.clear();
+        let casters = (0u32..).zip(input.casters);
+        self.casters.extend(casters.filter_map(|(index, bounds)| {
+            near(bounds).map(|bounds| ReachedCaster { index, bounds })
+        }));
+        let parts = self.casters.iter().map(|caster| caster.bounds);
+        self.receivers.extend(parts);
+        let receivers = input.receivers.iter().filter_map(near);
+        self.receivers.extend(receivers);
+        let visible = self.visible_bounds(input);
+        self.casters
+            .retain(|caster| can_shadow(&input.casters[caster.index as usize], &visible, light));
+    }
+
+    /// Bounds of the receivers that the camera, if any, sees.
+    fn visible_bounds(&self, input: &LocalInput<'_>) -> (DVec3, DVec3) {
+        let all = HalfSpaces::default();
+        let seen = input.camera.map_or(&all, |camera| &camera.planes);
+        let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for bounds in &self.receivers {
+            let (low, high) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+            if min.cmple(low).all() && max.cmpge(high).all() {
+                continue;
+            }
+            if seen.relation(bounds) == Relation::Inside {
+                min = min.min(low);
+                max = max.max(high);
+                continue;
+            }
+            seen.visit_vertices(bounds, |vertex| {
+                min = min.min(vertex);
+                max = max.max(vertex);
+            });
+        }
+        (min, max)
+    }
+}
+
+/// How far the light matters: its range, or the farthest corner of anything where the range goes beyond.
+pub(crate) fn reach(input: &LocalInput<'_>, light: DVec3) -> f64 {
+    input
+        .casters
+        .iter()
+        .chain(input.receivers)
+        .filter(|bounds| !bounds.is_empty())
+        .map(|bounds| {
+            let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+            (light - min).abs().max((light - max).abs()).length()
+        })
+        .fold(0.0, f64::max)
+        .min(input.range)
+}
+
+fn intersection(a: &Aabb, b: &Aabb) -> Aabb {
+    Aabb::new(a.min.max(b.min), a.max.min(b.max))
+}
+
+/// Squared distance of a point from a box; 0 inside.
+fn distance_squared(bounds: &Aabb, point: DVec3) -> f64 {
+    let nearest = point.clamp(bounds.min.as_dvec3(), bounds.max.as_dvec3());
+    nearest.distance_squared(point)
+}
+
+/// Can a shadow of `caster` fall on anything in `visible`? Shadows lead away from the light: on an axis on which the light lies
+/// to one side of the caster, some receiver must lie beyond the caster's near side. The flat wall of a room fails this.
+fn can_shadow(caster: &Aabb, visible: &(DVec3, DVec3), light: DVec3) -> bool {
+    let (low, high) = (caster.min.as_dvec3(), caster.max.as_dvec3());
+    !caster.is_empty()
+        && (0..3).all(|axis| {
+            if light[axis] < low[axis] {
+                visible.1[axis] > low[axis]
+            } else if light[axis] > high[axis] {
+                visible.0[axis] < high[axis]
+            } else {
+                true
+            }
+        })
+}
