@@ -1,9 +1,9 @@
 //! `DebugView`: a depth map as a picture for people.
 
 use bytemuck::{Pod, Zeroable};
-use wgpu::util::DeviceExt;
 
-use crate::error::DebugViewError;
+use crate::cast::{capture_device_errors, filled_buffer};
+use crate::error::{DebugViewError, DeviceRefusal};
 use crate::receive::{Selection, ShadowSource, ShadowViewUniform};
 use crate::shader;
 
@@ -45,7 +45,8 @@ impl DebugView {
     /// For passes with one colour target of `format`, no depth attachment and one sample.
     ///
     /// # Errors
-    /// [`DebugViewError::Format`] for a format that floats cannot be drawn to.
+    /// [`DebugViewError::Format`] for a format that floats cannot be drawn to, [`DebugViewError::Device`] for a device that is
+    /// lost or out of memory.
     pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Result<Self, DebugViewError> {
         let floats = matches!(
             format.sample_type(None, Some(device.features())),
@@ -58,29 +59,33 @@ impl DebugView {
         if !(floats && renderable) {
             return Err(DebugViewError::Format { format });
         }
-        let layout = create_layout(device);
-        let source = shader::compose(&[shader::DEBUG_VIEW.name]).unwrap_or_default();
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("shadow debug view"),
-            source: wgpu::ShaderSource::Wgsl(source.into()),
-        });
-        let create = |entry| create_pipeline(device, &layout, &module, entry, format);
-        Ok(Self {
-            layer: create("shadow_debug_layer"),
-            cross: create("shadow_debug_cross"),
-            layout,
-            sampler: device.create_sampler(&wgpu::SamplerDescriptor {
+        let create = || {
+            let layout = create_layout(device);
+            let source = shader::compose(&[shader::DEBUG_VIEW.name]).unwrap_or_default();
+            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some("shadow debug view"),
-                ..Default::default()
-            }),
-        })
+                source: wgpu::ShaderSource::Wgsl(source.into()),
+            });
+            let pipeline = |entry| create_pipeline(device, &layout, &module, entry, format);
+            Self {
+                layer: pipeline("shadow_debug_layer"),
+                cross: pipeline("shadow_debug_cross"),
+                sampler: device.create_sampler(&wgpu::SamplerDescriptor {
+                    label: Some("shadow debug view"),
+                    ..Default::default()
+                }),
+                layout,
+            }
+        };
+        capture_device_errors(device, create).map_err(not_made("the pipelines of a debug view"))
     }
 
     /// Draws `picture` of `source` over the whole viewport of `pass`, which the engine may set to a corner of its window. Sets
     /// pipeline and bind group 0.
     ///
     /// # Errors
-    /// [`DebugViewError`] for a layer that the map does not have, or a cross of a light without a cube; nothing is drawn then.
+    /// [`DebugViewError`] for a layer that the map does not have, a cross of a light without a cube, or a device that is lost,
+    /// out of memory, or not the light's own; nothing is drawn then.
     pub fn draw(
         &self,
         device: &wgpu::Device,
@@ -115,42 +120,50 @@ impl DebugView {
             local: u32::from(local),
             padding: [0; 3],
         };
-        let upload = |contents: &[u8]| {
-            device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("shadow debug view"),
-                contents,
-                usage: wgpu::BufferUsages::UNIFORM,
-            })
-        };
-        let header = upload(bytemuck::bytes_of(&header));
-        let views = upload(bytemuck::cast_slice(&views));
-        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("shadow debug view"),
-            layout: &self.layout,
-            entries: &[
-                wgpu::BindGroupEntry {
-                    binding: 0,
-                    resource: header.as_entire_binding(),
-                },
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: views.as_entire_binding(),
-                },
-                wgpu::BindGroupEntry {
-                    binding: 2,
-                    resource: wgpu::BindingResource::TextureView(receiver.map),
-                },
-                wgpu::BindGroupEntry {
-                    binding: 3,
-                    resource: wgpu::BindingResource::Sampler(&self.sampler),
-                },
-            ],
-        });
+        let bind_group = self
+            .bind_group(device, &header, &views, receiver.map)
+            .map_err(not_made("the bind group of a debug view"))?;
         pass.set_pipeline(pipeline);
         pass.set_bind_group(0, &bind_group, &[]);
         pass.draw(0..3, 0..1);
         Ok(())
     }
+
+    fn bind_group(
+        &self,
+        device: &wgpu::Device,
+        header: &DebugUniform,
+        views: &[ShadowViewUniform],
+        map: &wgpu::TextureView,
+    ) -> Result<wgpu::BindGroup, DeviceRefusal> {
+        let upload = |contents: &[u8]| {
+            let usage = wgpu::BufferUsages::UNIFORM;
+            filled_buffer(device, "shadow debug view", contents, usage)
+        };
+        let header = upload(bytemuck::bytes_of(header))?;
+        let views = upload(bytemuck::cast_slice(views))?;
+        let resources = [
+            header.as_entire_binding(),
+            views.as_entire_binding(),
+            wgpu::BindingResource::TextureView(map),
+            wgpu::BindingResource::Sampler(&self.sampler),
+        ];
+        let entries: Vec<_> = (0..)
+            .zip(resources)
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+            .collect();
+        capture_device_errors(device, || {
+            device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("shadow debug view"),
+                layout: &self.layout,
+                entries: &entries,
+            })
+        })
+    }
+}
+
+fn not_made(object: &'static str) -> impl Fn(DeviceRefusal) -> DebugViewError {
+    move |refusal| DebugViewError::Device { object, refusal }
 }
 
 fn create_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {

@@ -4,6 +4,21 @@ use thiserror::Error;
 
 use crate::DepthFormat;
 
+/// Why a device did not make what it was asked for. Part of every error of the crate that a device can cause.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum DeviceRefusal {
+    /// The device is lost or was destroyed. Nothing made on it works any more: make everything anew on another one.
+    #[error("the device is lost")]
+    Lost,
+    /// The device's memory does not suffice.
+    #[error("the device is out of memory")]
+    OutOfMemory,
+    /// The device found the request invalid, for instance for objects of another device; the text is the device's own.
+    #[error("{0}")]
+    Refused(String),
+}
+
 /// What a shadow light refuses at construction or at its per-frame call.
 ///
 /// Whatever the call, an error means that nothing was recorded and that the object keeps its last good state.
@@ -118,14 +133,17 @@ pub enum ShadowError {
         /// Bytes asked for.
         bytes: u64,
     },
-    /// The device refused or lost an object; the text is the device's own.
-    #[error("the device refused {object}: {message}")]
+    /// The device is lost, out of memory, or refused an object.
+    #[error("the device did not make {object}: {refusal}")]
     Device {
         /// What was being created.
         object: &'static str,
-        /// The device's own words.
-        message: String,
+        /// Why the device did not make it.
+        refusal: DeviceRefusal,
     },
+    /// A frame on another device than the light's maps are on.
+    #[error("device must be the one that the light was made on")]
+    OtherDevice,
 }
 
 /// What [`CasterPipeline::new`](crate::CasterPipeline::new) and [`MeshCaster::new`](crate::MeshCaster::new) refuse.
@@ -171,11 +189,13 @@ pub enum CasterError {
         /// The topology asked for.
         topology: wgpu::PrimitiveTopology,
     },
-    /// The device refused the pipeline, most often for the engine's own WGSL; the text is the device's own.
-    #[error("the device refused the caster pipeline: {message}")]
+    /// The device is lost, out of memory, or refused an object: a pipeline most often for the engine's own WGSL.
+    #[error("the device did not make {object}: {refusal}")]
     Device {
-        /// The device's own words.
-        message: String,
+        /// What was being created.
+        object: &'static str,
+        /// Why the device did not make it.
+        refusal: DeviceRefusal,
     },
     /// A number that must be finite was NaN or infinite.
     #[error("{field} must be finite, got {value}")]
@@ -263,6 +283,14 @@ pub enum BindingsError {
         /// What the device was created with.
         maximum: u32,
     },
+    /// The device is lost, out of memory, or refused an object: for instance a light of another device.
+    #[error("the device did not make {object}: {refusal}")]
+    Device {
+        /// What was being created.
+        object: &'static str,
+        /// Why the device did not make it.
+        refusal: DeviceRefusal,
+    },
     /// A module name that is not in the table.
     #[error("there is no shader module named {name:?}")]
     UnknownModule {
@@ -296,5 +324,13 @@ pub enum DebugViewError {
         layer: u32,
         /// Layers of the map.
         layers: u32,
+    },
+    /// The device is lost, out of memory, or refused an object: for instance a light of another device.
+    #[error("the device did not make {object}: {refusal}")]
+    Device {
+        /// What was being created.
+        object: &'static str,
+        /// Why the device did not make it.
+        refusal: DeviceRefusal,
     },
 }

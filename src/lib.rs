@@ -65,7 +65,7 @@ pub use debug_view::{DebugPicture, DebugView};
 pub use directional::{
     Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
 };
-pub use error::{BindingsError, CasterError, DebugViewError, ShadowError};
+pub use error::{BindingsError, CasterError, DebugViewError, DeviceRefusal, ShadowError};
 pub use fit::{CameraView, CascadeSplit, ShadowView, SliceReport, Stability};
 pub use omni::{OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor};
 pub use pool::{OmniShadowPool, PoolDescriptor, PoolFrame, PoolLight, ShadowSlot, SpotShadowPool};

@@ -13,6 +13,7 @@ use crate::{ShadowError, ShadowView, SliceReport};
 /// The common part of a light's shadows.
 #[derive(Debug)]
 pub(crate) struct LightMaps {
+    device: wgpu::Device,
     map: DepthMap,
     recorder: Recorder,
     uniforms: UploadBuffer,
@@ -106,6 +107,7 @@ impl LightMaps {
             ..ShadowReport::default()
         };
         Ok(Self {
+            device: device.clone(),
             map,
             recorder: Recorder::new(device, label, layers)?,
             uniforms: UploadBuffer::new(
@@ -207,6 +209,9 @@ impl LightMaps {
             casters,
             casters_field,
         } = frame;
+        if *device != self.device {
+            return Err(ShadowError::OtherDevice);
+        }
         let uniform_values = self.uniforms_of(layers, &views, viewer_render);
         let upload = self
             .uniforms

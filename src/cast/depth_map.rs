@@ -1,7 +1,7 @@
 //! The depth texture that a light owns: one layer per view.
 
-use crate::ShadowError;
-use crate::cast::{DepthFormat, DeviceRefusal, capture_device_errors};
+use crate::cast::{DepthFormat, capture_device_errors};
+use crate::{DeviceRefusal, ShadowError};
 
 /// A layered depth texture, with one attachment per layer and one view of them all.
 #[derive(Debug)]
@@ -88,9 +88,9 @@ impl DepthMap {
                 field,
                 bytes: bytes(size, allocated, format),
             },
-            DeviceRefusal::Refused(message) => ShadowError::Device {
+            refusal => ShadowError::Device {
                 object: "the depth map",
-                message,
+                refusal,
             },
         })
     }

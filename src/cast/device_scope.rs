@@ -1,23 +1,64 @@
-//! Device errors as values: wgpu reports them to an error scope, not as results.
+//! Device errors as values: wgpu reports them to an error scope, or, where the device is lost, not at all.
 
 use std::future::Future;
 use std::pin::pin;
 use std::task::{Context, Poll, Waker};
 
-/// Why the device did not make an object.
-#[derive(Debug)]
-pub(crate) enum DeviceRefusal {
-    OutOfMemory,
-    Refused(String),
-}
+use crate::DeviceRefusal;
 
-/// Runs `create` and tells whether the device accepted all of it.
+/// Runs `create` and tells whether the device made all of it.
 ///
 /// Native backends answer at once. On the web the answer comes later: there the object is returned, and an error makes it an
 /// invalid object, as WebGPU has it.
 pub(crate) fn capture_device_errors<T>(
     device: &wgpu::Device,
     create: impl FnOnce() -> T,
+) -> Result<T, DeviceRefusal> {
+    scoped(device, || {
+        let made = create();
+        is_alive(device).then_some(made)
+    })
+}
+
+/// A buffer that holds `contents` (a multiple of 4 bytes, not empty).
+pub(crate) fn filled_buffer(
+    device: &wgpu::Device,
+    label: &str,
+    contents: &[u8],
+    usage: wgpu::BufferUsages,
+) -> Result<wgpu::Buffer, DeviceRefusal> {
+    scoped(device, || {
+        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: contents.len() as u64,
+            usage,
+            mapped_at_creation: true,
+        });
+        buffer
+            .get_mapped_range_mut(..)
+            .ok()?
+            .copy_from_slice(contents);
+        buffer.unmap();
+        Some(buffer)
+    })
+}
+
+/// wgpu keeps the loss of a device from error scopes and hands out objects that are none. A buffer that is mapped at its
+/// creation is the exception: its memory cannot be reached. It needs no queue and waits for nothing.
+fn is_alive(device: &wgpu::Device) -> bool {
+    let probe = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("shadow device probe"),
+        size: wgpu::COPY_BUFFER_ALIGNMENT,
+        usage: wgpu::BufferUsages::MAP_WRITE | wgpu::BufferUsages::COPY_SRC,
+        mapped_at_creation: true,
+    });
+    probe.get_mapped_range_mut(..).is_ok()
+}
+
+/// `create` returns none where the device did not do its part. Without a word from the device that means that it is lost.
+fn scoped<T>(
+    device: &wgpu::Device,
+    create: impl FnOnce() -> Option<T>,
 ) -> Result<T, DeviceRefusal> {
     let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
@@ -30,9 +71,10 @@ pub(crate) fn capture_device_errors<T>(
     if out_of_memory.is_some() {
         return Err(DeviceRefusal::OutOfMemory);
     }
-    match invalid.or(failed) {
-        None => Ok(made),
-        Some(error) => Err(DeviceRefusal::Refused(error.to_string())),
+    match (invalid.or(failed), made) {
+        (Some(error), _) => Err(DeviceRefusal::Refused(error.to_string())),
+        (None, None) => Err(DeviceRefusal::Lost),
+        (None, Some(made)) => Ok(made),
     }
 }
 

@@ -4,9 +4,8 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::Mat4;
-use wgpu::util::DeviceExt;
 
-use crate::cast::{CasterPipeline, ModelTransform, Revision, ShadowCaster};
+use crate::cast::{CasterPipeline, ModelTransform, Revision, ShadowCaster, filled_buffer};
 use crate::error::CasterError;
 use crate::{Aabb, ShadowView};
 
@@ -68,8 +67,8 @@ impl MeshCaster {
     /// Keeps handles of the buffers; nothing is copied but the matrix.
     ///
     /// # Errors
-    /// [`CasterError`] for a non-finite matrix, a buffer without its usage flag, or index and vertex ranges that a buffer does
-    /// not hold.
+    /// [`CasterError`] for a non-finite matrix, a buffer without its usage flag, index and vertex ranges that a buffer does
+    /// not hold, or a device that is lost or out of memory. (A mesh that needs no matrix makes nothing on the device.)
     pub fn new(
         device: &wgpu::Device,
         descriptor: &MeshCasterDescriptor<'_>,
@@ -80,13 +79,20 @@ impl MeshCaster {
             descriptor.pipeline.model_transform(),
             ModelTransform::InstanceMatrix { .. }
         );
-        let transform = has_matrix.then(|| {
-            device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some(descriptor.label.unwrap_or("shadow mesh caster")),
-                contents: &matrix_bytes(descriptor.pipeline, &descriptor.render_from_model),
-                usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+        let transform = has_matrix
+            .then(|| {
+                filled_buffer(
+                    device,
+                    descriptor.label.unwrap_or("shadow mesh caster"),
+                    &matrix_bytes(descriptor.pipeline, &descriptor.render_from_model),
+                    wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+                )
             })
-        });
+            .transpose()
+            .map_err(|refusal| CasterError::Device {
+                object: "the transform of a mesh",
+                refusal,
+            })?;
         let mirrors = descriptor.render_from_model.determinant() < 0.0;
         let bounds_render = if has_matrix {
             descriptor

@@ -28,7 +28,7 @@ pub use caster::{Revision, ShadowCaster};
 pub(crate) use content::{Plan, ViewDraws};
 pub use depth_format::DepthFormat;
 pub(crate) use depth_map::DepthMap;
-pub(crate) use device_scope::{DeviceRefusal, capture_device_errors};
+pub(crate) use device_scope::{capture_device_errors, filled_buffer};
 pub use mesh::{MeshCaster, MeshCasterDescriptor, MeshIndices};
 pub use pipeline::{
     CasterPipeline, CasterPipelineDescriptor, CasterVertex, ModelTransform, PositionAttribute,

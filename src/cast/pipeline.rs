@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::cast::pipeline_build::{ByFormat, create_pipelines};
-use crate::cast::{DepthFormat, DeviceRefusal, capture_device_errors};
+use crate::cast::{DepthFormat, capture_device_errors};
 use crate::error::CasterError;
 
 /// Where the built-in vertex stage finds positions.
@@ -172,10 +172,8 @@ impl CasterPipeline {
         };
         let by_format = capture_device_errors(device, || create_pipelines(device, descriptor))
             .map_err(|refusal| CasterError::Device {
-                message: match refusal {
-                    DeviceRefusal::OutOfMemory => "out of memory".to_owned(),
-                    DeviceRefusal::Refused(message) => message,
-                },
+                object: "a caster pipeline",
+                refusal,
             })?;
         Ok(Self {
             variants: Arc::new(Variants {

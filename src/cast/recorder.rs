@@ -5,7 +5,7 @@ use bytemuck::{Pod, Zeroable};
 use crate::cast::content::{Content, Plan, ViewDraws};
 use crate::cast::pipeline_build::view_layout;
 use crate::cast::upload::{PendingUpload, UploadBuffer};
-use crate::cast::{CasterPipeline, DepthFormat, DepthMap, ShadowCaster};
+use crate::cast::{CasterPipeline, DepthFormat, DepthMap, ShadowCaster, capture_device_errors};
 use crate::{ShadowError, ShadowView};
 
 /// Mirror of `ShadowCasterView` in `wgsl/caster.wgsl`.
@@ -64,18 +64,25 @@ impl Recorder {
             &format!("{label} caster views"),
             stride * u64::from(layers),
         )?;
-        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some(&format!("{label} caster views")),
-            layout: &view_layout(device),
-            entries: &[wgpu::BindGroupEntry {
-                binding: 0,
-                resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                    buffer: uniforms.buffer(),
-                    offset: 0,
-                    size: wgpu::BufferSize::new(VIEW_UNIFORM_BYTES),
-                }),
-            }],
-        });
+        let create = || {
+            device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some(&format!("{label} caster views")),
+                layout: &view_layout(device),
+                entries: &[wgpu::BindGroupEntry {
+                    binding: 0,
+                    resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                        buffer: uniforms.buffer(),
+                        offset: 0,
+                        size: wgpu::BufferSize::new(VIEW_UNIFORM_BYTES),
+                    }),
+                }],
+            })
+        };
+        let bind_group =
+            capture_device_errors(device, create).map_err(|refusal| ShadowError::Device {
+                object: "the bind group of the casters",
+                refusal,
+            })?;
         let layers = (0..layers).map(|layer| Layer {
             label: format!("{label} layer {layer}"),
             content: Content::default(),

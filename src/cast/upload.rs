@@ -1,7 +1,7 @@
 //! Small uniform buffers, written in the order of the engine's own commands.
 
-use crate::ShadowError;
-use crate::cast::{DeviceRefusal, capture_device_errors};
+use crate::cast::{capture_device_errors, filled_buffer};
+use crate::{DeviceRefusal, ShadowError};
 
 /// A uniform buffer whose writes go through the engine's encoder, so that two frames recorded before one submission each see
 /// their own values. Unchanged contents are not written again.
@@ -48,21 +48,8 @@ impl UploadBuffer {
         if self.written == bytes || bytes.is_empty() {
             return Ok(None);
         }
-        let staging = capture_device_errors(device, || {
-            let staging = device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("shadow upload"),
-                size: bytes.len() as u64,
-                usage: wgpu::BufferUsages::COPY_SRC,
-                mapped_at_creation: true,
-            });
-            let mapped = staging.get_mapped_range_mut(..).map(|mut view| {
-                view.copy_from_slice(bytes);
-            });
-            staging.unmap();
-            mapped.map(|()| staging)
-        })
-        .map_err(refused)?
-        .map_err(|error| refused(DeviceRefusal::Refused(error.to_string())))?;
+        let usage = wgpu::BufferUsages::COPY_SRC;
+        let staging = filled_buffer(device, "shadow upload", bytes, usage).map_err(refused)?;
         Ok(Some(PendingUpload {
             staging,
             bytes: bytes.to_owned(),
@@ -87,9 +74,6 @@ impl UploadBuffer {
 fn refused(refusal: DeviceRefusal) -> ShadowError {
     ShadowError::Device {
         object: "a uniform buffer",
-        message: match refusal {
-            DeviceRefusal::OutOfMemory => "out of memory".to_owned(),
-            DeviceRefusal::Refused(message) => message,
-        },
+        refusal,
     }
 }

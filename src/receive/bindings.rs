@@ -1,5 +1,6 @@
 //! One bind group for a set of lights, and the WGSL for exactly that set.
 
+use crate::cast::capture_device_errors;
 use crate::error::BindingsError;
 use crate::receive::filter::FilterSampler;
 use crate::receive::{Sampling, ShadowViewUniform, emit};
@@ -83,7 +84,8 @@ impl ShadowBindings {
     /// Makes layout, bind group and WGSL. Do this once for a set of lights; per frame there is nothing to update.
     ///
     /// # Errors
-    /// [`BindingsError`] for names that are not WGSL identifiers or not distinct, and for sets that exceed the device's limits.
+    /// [`BindingsError`] for names that are not WGSL identifiers or not distinct, for sets that exceed the device's limits, and
+    /// for a device that is lost, out of memory, or not the lights' own.
     pub fn new(
         device: &wgpu::Device,
         descriptor: &ShadowBindingsDescriptor<'_>,
@@ -91,13 +93,21 @@ impl ShadowBindings {
         check_names(descriptor.lights)?;
         let samplers = used_samplers(descriptor.lights);
         check_limits(device, descriptor, &samplers)?;
-        let layout = create_layout(device, descriptor, &samplers);
-        let bind_group = create_bind_group(device, descriptor, &samplers, &layout);
+        let wgsl = emit::wgsl(descriptor, &samplers)?;
+        let (layout, bind_group) = capture_device_errors(device, || {
+            let layout = create_layout(device, descriptor, &samplers);
+            let bind_group = create_bind_group(device, descriptor, &samplers, &layout);
+            (layout, bind_group)
+        })
+        .map_err(|refusal| BindingsError::Device {
+            object: "the bind group of the lights",
+            refusal,
+        })?;
         Ok(Self {
             layout,
             bind_group,
             group: descriptor.group,
-            wgsl: emit::wgsl(descriptor, &samplers)?,
+            wgsl,
         })
     }
 

@@ -1,8 +1,8 @@
 //! What `CasterPipeline` refuses: each error provoked, compared as a value, and read as a message.
 
 use wgpu_shadows::{
-    CasterError, CasterPipeline, CasterPipelineDescriptor, CasterVertex, ModelTransform,
-    PositionAttribute,
+    CasterError, CasterPipeline, CasterPipelineDescriptor, CasterVertex, DeviceRefusal,
+    ModelTransform, PositionAttribute,
 };
 
 use crate::support::gpu::gpu;
@@ -162,11 +162,15 @@ fn wgsl_that_the_device_refuses() {
     ];
     for (descriptor, word) in cases {
         let error = pipeline(&descriptor).expect_err(word);
-        let CasterError::Device { message } = &error else {
+        let CasterError::Device {
+            object,
+            refusal: DeviceRefusal::Refused(message),
+        } = &error
+        else {
             panic!("{error:?}");
         };
         assert!(message.contains(word), "{message}");
-        let text = format!("the device refused the caster pipeline: {message}");
+        let text = format!("the device did not make {object}: {message}");
         assert_eq!(error.to_string(), text);
     }
 }

@@ -9,6 +9,7 @@ mod contact;
 mod debug_view;
 mod depth_formats;
 mod depth_texture;
+mod device_loss;
 mod direction_filters;
 mod emitted_wgsl;
 mod engine_wgsl;

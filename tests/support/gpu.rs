@@ -43,27 +43,22 @@ pub fn vulkan() -> &'static Gpu {
 impl Gpu {
     /// A device of its own, for tests that need other features or limits than the default.
     pub fn new(request: GpuRequest) -> Self {
-        let backends = request.backend.unwrap_or_else(backends);
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
-            backends,
-            ..wgpu::InstanceDescriptor::new_without_display_handle()
-        });
-        let adapters = pollster::block_on(instance.enumerate_adapters(backends));
-        // A software adapter gives every machine the same pixels, so it comes first.
-        let adapter = adapters
-            .iter()
-            .find(|adapter| adapter.get_info().device_type == wgpu::DeviceType::Cpu)
-            .or(adapters.first())
-            .unwrap_or_else(|| {
-                panic!(
-                    "no {backends:?} adapter. On Debian and Ubuntu a software one comes with `apt-get install \
-                     mesa-vulkan-drivers` (Vulkan) or `libegl1 libgl1-mesa-dri` (OpenGL)."
-                )
-            });
+        let adapter = adapter(&request);
+        Self::of(&adapter, &request)
+    }
+
+    /// Two devices of one instance: wgpu tells the objects of one from those of the other.
+    pub fn two() -> [Self; 2] {
+        let request = GpuRequest::default();
+        let adapter = adapter(&request);
+        [(); 2].map(|()| Self::of(&adapter, &request))
+    }
+
+    fn of(adapter: &wgpu::Adapter, request: &GpuRequest) -> Self {
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("shadow tests"),
             required_features: request.features,
-            required_limits: request.limits,
+            required_limits: request.limits.clone(),
             ..Default::default()
         }))
         .unwrap_or_else(|error| panic!("{}: {error}", adapter.get_info().name));
@@ -132,6 +127,29 @@ impl Gpu {
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+fn adapter(request: &GpuRequest) -> wgpu::Adapter {
+    let backends = request.backend.unwrap_or_else(backends);
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+        backends,
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
+    });
+    let adapters = pollster::block_on(instance.enumerate_adapters(backends));
+    // A software adapter gives every machine the same pixels, so it comes first.
+    let software =
+        |adapter: &&wgpu::Adapter| adapter.get_info().device_type == wgpu::DeviceType::Cpu;
+    adapters
+        .iter()
+        .find(software)
+        .or(adapters.first())
+        .cloned()
+        .unwrap_or_else(|| {
+            panic!(
+                "no {backends:?} adapter. On Debian and Ubuntu a software one comes with `apt-get install \
+                 mesa-vulkan-drivers` (Vulkan) or `libegl1 libgl1-mesa-dri` (OpenGL)."
+            )
+        })
 }
 
 fn backends() -> wgpu::Backends {

@@ -1,0 +1,349 @@
+//! Devices that are gone, full, or not the one that a light was made on: typed errors at every constructor and every call, never
+//! a panic.
+
+use glam::{DVec3, Mat4, Vec3};
+use wgpu_shadows::{
+    Aabb, BindingsError, CasterError, CasterPipeline, CasterPipelineDescriptor, Coverage,
+    DebugPicture, DebugView, DebugViewError, DeviceRefusal, DirectionalFrame, DirectionalLight,
+    DirectionalShadow, DirectionalShadowDescriptor, OmniFrame, OmniLight, OmniShadow,
+    OmniShadowDescriptor, OmniShadowPool, PoolDescriptor, PoolFrame, PoolLight, ShadowBindings,
+    ShadowBindingsDescriptor, ShadowCaster, ShadowError, SpotFrame, SpotLight, SpotShadow,
+    SpotShadowDescriptor, SpotShadowPool,
+};
+
+use crate::support::gpu::{Gpu, GpuRequest};
+use crate::support::picture::{color_pass, color_target};
+use crate::support::scene::{Mesh, default_pipeline};
+
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+const COVER: Aabb = Aabb::new(Vec3::NEG_ONE, Vec3::ONE);
+
+/// One of everything that is made on a device.
+struct Everything {
+    sun: DirectionalShadow,
+    spot: SpotShadow,
+    lamp: OmniShadow,
+    spots: SpotShadowPool,
+    lamps: OmniShadowPool,
+    view: DebugView,
+}
+
+fn sun(gpu: &Gpu) -> Result<DirectionalShadow, ShadowError> {
+    let descriptor = DirectionalShadowDescriptor {
+        map_size: 16,
+        ..Default::default()
+    };
+    DirectionalShadow::new(&gpu.device, &descriptor)
+}
+
+fn spot(gpu: &Gpu) -> Result<SpotShadow, ShadowError> {
+    let descriptor = SpotShadowDescriptor {
+        map_size: 16,
+        ..Default::default()
+    };
+    SpotShadow::new(&gpu.device, &descriptor)
+}
+
+fn lamp(gpu: &Gpu) -> Result<OmniShadow, ShadowError> {
+    let descriptor = OmniShadowDescriptor {
+        map_size: 16,
+        ..Default::default()
+    };
+    OmniShadow::new(&gpu.device, &descriptor)
+}
+
+fn pool() -> PoolDescriptor<'static> {
+    PoolDescriptor {
+        map_size: 16,
+        capacity: 2,
+        ..Default::default()
+    }
+}
+
+fn bindings(gpu: &Gpu, sun: &DirectionalShadow) -> Result<ShadowBindings, BindingsError> {
+    let descriptor = ShadowBindingsDescriptor {
+        lights: &[("sun", sun.source())],
+        ..Default::default()
+    };
+    ShadowBindings::new(&gpu.device, &descriptor)
+}
+
+impl Everything {
+    fn new(gpu: &Gpu) -> Self {
+        let device = &gpu.device;
+        Self {
+            sun: sun(gpu).expect("a sun"),
+            spot: spot(gpu).expect("a spot"),
+            lamp: lamp(gpu).expect("a lamp"),
+            spots: SpotShadowPool::new(device, &pool()).expect("a pool"),
+            lamps: OmniShadowPool::new(device, &pool()).expect("a pool"),
+            view: DebugView::new(device, FORMAT).expect("a debug view"),
+        }
+    }
+
+    /// A frame of every light on `gpu`, or why there is none.
+    fn record(&mut self, gpu: &Gpu, casters: &[&dyn ShadowCaster]) -> Vec<Option<ShadowError>> {
+        let (device, origin, receivers) = (&gpu.device, DVec3::ZERO, &[COVER][..]);
+        let mut encoder = gpu.encoder();
+        let lamp = OmniLight {
+            position_world: DVec3::new(0.0, 3.0, 0.0),
+            range: 9.0,
+        };
+        let spot = SpotLight {
+            position_world: lamp.position_world,
+            direction: Vec3::NEG_Y,
+            outer_angle_radians: 0.6,
+            range: 9.0,
+        };
+        let sun_frame = DirectionalFrame {
+            origin,
+            light: DirectionalLight::new(Vec3::NEG_Y),
+            coverage: Coverage::Bounds(COVER),
+            casters,
+            receivers,
+        };
+        let spot_frame = SpotFrame {
+            origin,
+            light: spot,
+            camera: None,
+            casters,
+            receivers,
+        };
+        let lamp_frame = OmniFrame {
+            origin,
+            light: lamp,
+            camera: None,
+            casters,
+            receivers,
+        };
+        let spots = [PoolLight {
+            slot: self.spots.insert().expect("a slot"),
+            light: spot,
+            importance: 1.0,
+        }];
+        let lamps = [PoolLight {
+            slot: self.lamps.insert().expect("a slot"),
+            light: lamp,
+            importance: 1.0,
+        }];
+        let results = [
+            self.sun.record(device, &mut encoder, &sun_frame).err(),
+            self.spot.record(device, &mut encoder, &spot_frame).err(),
+            self.lamp.record(device, &mut encoder, &lamp_frame).err(),
+            self.spots
+                .record(device, &mut encoder, &pool_frame(&spots, casters))
+                .err(),
+            self.lamps
+                .record(device, &mut encoder, &pool_frame(&lamps, casters))
+                .err(),
+        ];
+        gpu.queue.submit([encoder.finish()]);
+        results.to_vec()
+    }
+}
+
+fn pool_frame<'a, L>(
+    lights: &'a [PoolLight<L>],
+    casters: &'a [&'a dyn ShadowCaster],
+) -> PoolFrame<'a, L> {
+    PoolFrame {
+        origin: DVec3::ZERO,
+        lights,
+        camera: None,
+        casters,
+        receivers: &[COVER],
+        max_views: None,
+    }
+}
+
+/// Once the device is gone, nothing is made on it and no frame is recorded, and each call says so.
+#[test]
+fn a_lost_device_makes_nothing() {
+    let lost = Gpu::new(GpuRequest::default());
+    let device = &lost.device;
+    let mesh = Mesh::cuboid(Vec3::splat(-0.2), Vec3::splat(0.2));
+    let pipeline = default_pipeline(&lost);
+    let caster = mesh.caster(&lost, &pipeline, Mat4::IDENTITY);
+    let vertices = lost.buffer(&mesh.positions, wgpu::BufferUsages::VERTEX);
+    let mut all = Everything::new(&lost);
+    bindings(&lost, &all.sun).expect("bindings");
+    assert_eq!(all.record(&lost, &[]), [const { None }; 5], "before");
+    let target = color_target(&lost, 4);
+    device.destroy();
+
+    let refusal = DeviceRefusal::Lost;
+    let errors = [
+        sun(&lost).err(),
+        spot(&lost).err(),
+        lamp(&lost).err(),
+        SpotShadowPool::new(device, &pool()).err(),
+        OmniShadowPool::new(device, &pool()).err(),
+    ];
+    for error in errors {
+        let error = error.expect("no light");
+        let wanted = ShadowError::Device {
+            object: "the depth map",
+            refusal: refusal.clone(),
+        };
+        assert_eq!(error, wanted);
+        let text = "the device did not make the depth map: the device is lost";
+        assert_eq!(error.to_string(), text);
+    }
+    let error = CasterPipeline::new(device, &CasterPipelineDescriptor::new());
+    let wanted = CasterError::Device {
+        object: "a caster pipeline",
+        refusal: refusal.clone(),
+    };
+    assert_eq!(error.expect_err("no pipeline"), wanted);
+    let error = wgpu_shadows::MeshCaster::new(
+        device,
+        &wgpu_shadows::MeshCasterDescriptor {
+            label: None,
+            pipeline: &pipeline,
+            vertices: &vertices,
+            indices: wgpu_shadows::MeshIndices::None { vertices: 0..3 },
+            bounds_model: mesh.bounds(),
+            render_from_model: Mat4::IDENTITY,
+        },
+    );
+    let wanted = CasterError::Device {
+        object: "the transform of a mesh",
+        refusal: refusal.clone(),
+    };
+    assert_eq!(error.expect_err("no mesh"), wanted);
+    let wanted = BindingsError::Device {
+        object: "the bind group of the lights",
+        refusal: refusal.clone(),
+    };
+    assert_eq!(bindings(&lost, &all.sun).expect_err("no bindings"), wanted);
+    let wanted = DebugViewError::Device {
+        object: "the pipelines of a debug view",
+        refusal: refusal.clone(),
+    };
+    let error = DebugView::new(device, FORMAT).expect_err("no debug view");
+    assert_eq!(error, wanted);
+
+    for error in all.record(&lost, &[&caster]) {
+        let wanted = ShadowError::Device {
+            object: "a uniform buffer",
+            refusal: refusal.clone(),
+        };
+        assert_eq!(error, Some(wanted));
+    }
+    assert_eq!(all.sun.views().len(), 0, "the last good state is kept");
+    let mut encoder = lost.encoder();
+    let mut pass = color_pass(&mut encoder, &target);
+    let picture = DebugPicture::Layer(0);
+    let error = all.view.draw(device, &mut pass, all.sun.source(), picture);
+    let wanted = DebugViewError::Device {
+        object: "the bind group of a debug view",
+        refusal,
+    };
+    assert_eq!(error, Err(wanted));
+}
+
+/// A light of another device is refused in the device's own words, and the frame of a light is recorded on its own device only.
+#[test]
+fn a_light_of_another_device_is_refused() {
+    let [here, there] = Gpu::two();
+    let mut all = Everything::new(&here);
+    let error = bindings(&there, &all.sun).expect_err("no bindings");
+    let BindingsError::Device {
+        object,
+        refusal: DeviceRefusal::Refused(message),
+    } = &error
+    else {
+        panic!("{error:?}");
+    };
+    assert_eq!(*object, "the bind group of the lights");
+    let text = format!("the device did not make {object}: {message}");
+    assert_eq!(error.to_string(), text);
+    let view = DebugView::new(&there.device, FORMAT).expect("a debug view");
+    let target = color_target(&there, 4);
+    let mut encoder = there.encoder();
+    {
+        let mut pass = color_pass(&mut encoder, &target);
+        let picture = DebugPicture::Layer(0);
+        let error = view.draw(&there.device, &mut pass, all.sun.source(), picture);
+        assert!(
+            matches!(
+                error,
+                Err(DebugViewError::Device {
+                    refusal: DeviceRefusal::Refused(_),
+                    ..
+                })
+            ),
+            "{error:?}"
+        );
+    }
+    there.submit(encoder);
+    for error in all.record(&there, &[]) {
+        assert_eq!(error, Some(ShadowError::OtherDevice));
+    }
+    assert_eq!(all.record(&here, &[]), [const { None }; 5]);
+}
+
+/// More than a software adapter addresses: the limits allow each side and the layers, and memory does not hold them. (OpenGL
+/// does not say when it runs out.)
+#[test]
+fn maps_larger_than_the_memory() {
+    let limits = wgpu::Limits {
+        max_texture_dimension_2d: 16384,
+        ..Default::default()
+    };
+    let large = Gpu::new(GpuRequest {
+        limits,
+        backend: Some(wgpu::Backends::VULKAN),
+        ..Default::default()
+    });
+    let device = &large.device;
+    let map_size = 16384;
+    let sun = DirectionalShadowDescriptor {
+        map_size,
+        cascades: 8,
+        ..Default::default()
+    };
+    let lamp = OmniShadowDescriptor {
+        map_size,
+        ..Default::default()
+    };
+    let pool = PoolDescriptor {
+        map_size,
+        capacity: 20,
+        ..Default::default()
+    };
+    let cases = [
+        (
+            DirectionalShadow::new(device, &sun).err(),
+            "DirectionalShadowDescriptor::map_size",
+            8,
+        ),
+        (
+            OmniShadow::new(device, &lamp).err(),
+            "OmniShadowDescriptor::map_size",
+            6,
+        ),
+        (
+            SpotShadowPool::new(device, &pool).err(),
+            "PoolDescriptor::map_size",
+            20,
+        ),
+        (
+            OmniShadowPool::new(device, &pool).err(),
+            "PoolDescriptor::map_size",
+            120,
+        ),
+    ];
+    for (error, field, layers) in cases {
+        let bytes = 16384 * 16384 * 4 * layers;
+        let error = error.expect("no memory");
+        assert_eq!(error, ShadowError::OutOfMemory { field, bytes });
+        assert_eq!(
+            error.to_string(),
+            format!(
+                "{field} needs {bytes} bytes of device memory, and the device is out of memory"
+            )
+        );
+    }
+}
