@@ -18,6 +18,8 @@
 //! Everything is recorded into your encoder, in order: uniforms first, then depth passes. The encoder must be submitted before
 //! what asks for the shadows; one that is dropped takes its passes with it, and then the light's `invalidate` must be called.
 //!
+//! What may be expected of scenes and inputs that break shadow maps, and what was measured of each: [`hard_cases`].
+//!
 //! # Spaces
 //!
 //! | space | what | type |
@@ -75,3 +77,7 @@ pub use receive::{
 };
 pub use report::{ShadowReport, ViewReport, ViewStatus};
 pub use spot::{SpotFrame, SpotLight, SpotShadow, SpotShadowDescriptor};
+
+#[cfg(doc)]
+#[doc = include_str!("../doc/hard_cases.md")]
+pub mod hard_cases {}

@@ -12,6 +12,7 @@ pub mod random_scene;
 pub mod readback;
 pub mod rounding;
 pub mod scene;
+pub mod table;
 pub mod texture_bytes;
 pub mod watched;
 pub mod wgsl;

@@ -1,6 +1,6 @@
 //! Scenes that break shadow maps: each through the whole path, fit, cast, receive and read back.
 //!
-//! Every case records what it expects and what it measured; `target/hard_cases.md` is the table of the last run.
+//! Every case compares what it expects and what it measured with the table in `doc/hard_cases.md`.
 
 mod cascades;
 mod creases;
@@ -16,5 +16,6 @@ mod meshes;
 mod scales;
 mod stage;
 mod steady;
-mod table;
 mod thin_casters;
+
+use crate::support::table;

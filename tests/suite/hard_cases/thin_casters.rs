@@ -95,7 +95,7 @@ fn record(sun: &mut Sun, field: &Field, nudge: f64) {
 /// From √2 texels on, every bar leaves a mark. A covered box that moves within its window changes nothing.
 #[test]
 fn thin_casters_are_caught_in_proportion_to_their_width() {
-    let mut words = Vec::new();
+    let mut worst: f64 = 0.0;
     let mut sun = Sun::new(&DirectionalShadowDescriptor {
         map_size: 512,
         filter: Filter::Nearest,
@@ -123,12 +123,12 @@ fn thin_casters_are_caught_in_proportion_to_their_width() {
                 record(&mut sun, &field, nudge * TEXEL);
                 assert_eq!(field.dark_texels(&sun), dark, "nudged by {nudge} texels");
             }
-            words.push(format!("{mean:.3} for {area:.3}"));
+            worst = worst.max((mean - area).abs() / tolerance);
         }
     }
     table::record(
         "casters 0.1 to 2 texels wide",
-        "mean area in texels within 3 sigma, constant in time",
-        words.join(", "),
+        "mean area of their shadows within 3 sigma of their own, the same in every frame, a mark of each from 1.42 texels on",
+        format!("{:.1} sigma at most, 0 changes", 3.0 * worst),
     );
 }

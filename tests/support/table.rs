@@ -1,0 +1,384 @@
+//! The table of hard cases, `doc/hard_cases.md`: what is expected, and what the suite measured on each backend.
+//!
+//! Every row is compared as its test measures it, so it holds for runs of a single test and in whatever order tests run. The
+//! words must be the same; figures may differ by a factor of 1.5 or by two in their last place, for other processors and driver
+//! versions round differently. On adapters that are no software, cases and expectations alone are compared, and so where the
+//! number of inputs is not the default run's. `SHADOW_HARD_CASES=update` writes the table instead, one backend's column a run.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use crate::support::gpu::{Gpu, gpu};
+
+/// Headings, each with the test files whose cases stand below it.
+const TOPICS: [(&str, &[&str]); 8] = [
+    ("Lit surfaces", &["self_shadow", "light_axes", "creases"]),
+    ("Contact", &["contact", "wall_foot", "layers"]),
+    (
+        "Casters",
+        &["thin_casters", "meshes", "engine_wgsl", "near_plane"],
+    ),
+    (
+        "Spot and point lights",
+        &["spot", "omni", "near_lights", "penumbra"],
+    ),
+    (
+        "Size, place and motion",
+        &["far_away", "scales", "fit_images", "cascades", "steady"],
+    ),
+    ("Borders of maps", &["out_of_range", "borders"]),
+    (
+        "Cameras, bounds and numbers",
+        &["extreme_cameras", "degenerate", "fuzz", "fuzz_values"],
+    ),
+    ("Devices", &["device_loss", "long_run", "depth_formats"]),
+];
+
+const INTRODUCTION: &str = "# Hard cases
+
+Scenes and inputs that break shadow maps, what this crate promises for each, and what its test suite measured. The suite renders
+every one of them on two software drivers, and fails where a promise is broken or where this table no longer says what was
+measured: `cargo test`, and `SHADOW_TEST_BACKEND=gl cargo test --test suite`. With `SHADOW_HARD_CASES=update` it rewrites the table.
+
+A *settled* receiver is one whose truth, by rays in double precision, is the same for three texels around. `u` is 2^-24, the
+rounding of f32; `N` the texels per side of the map; `P` the distance from the render origin. The scenes are a few metres in size
+where no unit is named.
+";
+
+const ABSENT: &str = "-";
+
+static FILE: Mutex<()> = Mutex::new(());
+
+#[derive(Clone, Debug, PartialEq)]
+struct Row {
+    topic: usize,
+    case: String,
+    expectation: String,
+    /// On Vulkan and on OpenGL.
+    measured: [String; 2],
+}
+
+#[derive(Default)]
+struct Table {
+    /// What each column was measured on.
+    machines: [String; 2],
+    rows: Vec<Row>,
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn path() -> PathBuf {
+    root().join("doc/hard_cases.md")
+}
+
+fn is_update() -> bool {
+    std::env::var("SHADOW_HARD_CASES").as_deref() == Ok("update")
+}
+
+/// Another number of inputs, other seeds or more frames than the table is of.
+fn is_another_run() -> bool {
+    ["PROPTEST_CASES", "PROPTEST_RNG_SEED", "SHADOW_LONG"]
+        .iter()
+        .any(|name| std::env::var_os(name).is_some())
+}
+
+fn column(gpu: &Gpu) -> usize {
+    usize::from(gpu.adapter.backend == wgpu::Backend::Gl)
+}
+
+impl Table {
+    fn read() -> Self {
+        let text = std::fs::read_to_string(path()).unwrap_or_default();
+        Self::parse(&text)
+    }
+
+    fn parse(text: &str) -> Self {
+        let mut table = Self::default();
+        let mut topic = 0;
+        for line in text.lines() {
+            if let Some(heading) = line.strip_prefix("## ") {
+                topic = TOPICS
+                    .iter()
+                    .position(|(name, _)| *name == heading)
+                    .unwrap_or(0);
+            } else if let Some(machine) = line.strip_prefix("- Vulkan: ") {
+                machine.clone_into(&mut table.machines[0]);
+            } else if let Some(machine) = line.strip_prefix("- OpenGL: ") {
+                machine.clone_into(&mut table.machines[1]);
+            } else if let Some(row) = line.strip_prefix("| ").and_then(|l| l.strip_suffix(" |")) {
+                let cells: Vec<_> = row.split(" | ").map(str::to_owned).collect();
+                if let Ok([case, expectation, vulkan, opengl]) = <[String; 4]>::try_from(cells) {
+                    if case != "case" {
+                        table.rows.push(Row {
+                            topic,
+                            case,
+                            expectation,
+                            measured: [vulkan, opengl],
+                        });
+                    }
+                }
+            }
+        }
+        table
+    }
+
+    fn text(&self) -> String {
+        let [vulkan, opengl] = &self.machines;
+        let mut text = format!("{INTRODUCTION}\n- Vulkan: {vulkan}\n- OpenGL: {opengl}\n");
+        for (topic, (name, _)) in TOPICS.iter().enumerate() {
+            let rows = self.rows.iter().filter(|row| row.topic == topic);
+            let lines: Vec<_> = rows
+                .map(|row| {
+                    let [vulkan, opengl] = &row.measured;
+                    format!(
+                        "| {} | {} | {vulkan} | {opengl} |\n",
+                        row.case, row.expectation
+                    )
+                })
+                .collect();
+            if !lines.is_empty() {
+                text += &format!("\n## {name}\n\n");
+                text += "| case | expectation | measured on Vulkan | measured on OpenGL |\n|---|---|---|---|\n";
+                text += &lines.concat();
+            }
+        }
+        text
+    }
+
+    /// Takes a row's cells, and keeps the other backend's.
+    fn put(&mut self, topic: usize, case: &str, expectation: &str, column: usize, measured: &str) {
+        let old = self.rows.iter().position(|row| row.case == case);
+        let mut row = match old {
+            Some(index) => self.rows.remove(index),
+            None => Row {
+                topic,
+                case: case.to_owned(),
+                expectation: String::new(),
+                measured: [ABSENT, ABSENT].map(str::to_owned),
+            },
+        };
+        row.topic = topic;
+        expectation.clone_into(&mut row.expectation);
+        measured.clone_into(&mut row.measured[column]);
+        self.rows.push(row);
+        self.rows.sort_by(|a, b| a.case.cmp(&b.case));
+    }
+
+    /// Why the table is not what was measured, if it is not.
+    fn fault(
+        &self,
+        case: &str,
+        expectation: &str,
+        measured: Option<(usize, &str)>,
+    ) -> Option<String> {
+        let Some(row) = self.rows.iter().find(|row| row.case == case) else {
+            return Some(format!("no row {case:?}"));
+        };
+        if row.expectation != expectation {
+            return Some(format!(
+                "{case:?} is expected to be {:?} there, and {expectation:?} in the test",
+                row.expectation
+            ));
+        }
+        let (column, measured) = measured?;
+        let written = &row.measured[column];
+        (!agree(written, measured))
+            .then(|| format!("{case:?}: {written:?} there, measured {measured:?}"))
+    }
+}
+
+/// Compares what a test has measured with its row of the table, or writes it there. Call it last, so that the table never holds
+/// what was not as expected. The case is a literal, named by one test only.
+#[track_caller]
+pub fn record(case: &str, expectation: &str, measured: impl AsRef<str>) {
+    let measured = measured.as_ref();
+    for cell in [case, expectation, measured] {
+        assert!(!cell.contains(['|', '\n']), "a cell of a table: {cell:?}");
+    }
+    let file = Path::new(std::panic::Location::caller().file());
+    let stem = file
+        .file_stem()
+        .and_then(|stem| stem.to_str())
+        .expect("a file with a name");
+    let topic = TOPICS.iter().position(|(_, files)| files.contains(&stem));
+    let topic = topic.unwrap_or_else(|| panic!("{stem} has no heading"));
+    let gpu = gpu();
+    let comparable = gpu.adapter.device_type == wgpu::DeviceType::Cpu && !is_another_run();
+    let column = column(gpu);
+    let fault = {
+        let _turn = FILE.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut table = Table::read();
+        if is_update() {
+            assert!(
+                comparable,
+                "the table is of the default run on software adapters"
+            );
+            let info = &gpu.adapter;
+            table.machines[column] = format!("{} {}", info.name, info.driver_info)
+                .trim()
+                .to_owned();
+            table.put(topic, case, expectation, column, measured);
+            std::fs::write(path(), table.text()).expect("a writable table");
+        }
+        table.fault(case, expectation, comparable.then_some((column, measured)))
+    };
+    if let Some(fault) = fault {
+        panic!(
+            "doc/hard_cases.md has {fault}\nSHADOW_HARD_CASES=update accepts it (on {})",
+            gpu.describe()
+        );
+    }
+}
+
+/// Words, and the numbers between them with the worth of two in their last place.
+fn parts(text: &str) -> (Vec<&str>, Vec<(f64, f64)>) {
+    let (mut words, mut numbers) = (Vec::new(), Vec::new());
+    let mut rest = text;
+    while let Some(start) = rest.find(|c: char| c.is_ascii_digit()) {
+        words.push(&rest[..start]);
+        let digits = &rest[start..];
+        let length_of = |text: &str| {
+            text.find(|c: char| !c.is_ascii_digit())
+                .unwrap_or(text.len())
+        };
+        let mut end = length_of(digits);
+        let mut decimals = 0;
+        if let Some(fraction) = digits[end..].strip_prefix('.') {
+            decimals = length_of(fraction);
+            end += if decimals > 0 { 1 + decimals } else { 0 };
+        }
+        let mut exponent = 0;
+        if let Some(power) = digits[end..].strip_prefix('e') {
+            let sign = usize::from(power.starts_with('-'));
+            let length = length_of(&power[sign..]);
+            if length > 0 {
+                exponent = power[..sign + length].parse().unwrap_or(0);
+                end += 1 + sign + length;
+            }
+        }
+        let last_place = 10_f64.powi(exponent - decimals as i32);
+        numbers.push((digits[..end].parse().unwrap_or(f64::NAN), 2.0 * last_place));
+        rest = &digits[end..];
+    }
+    words.push(rest);
+    (words, numbers)
+}
+
+/// The same words, and figures as near as two machines give them.
+fn agree(written: &str, measured: &str) -> bool {
+    let ((words, figures), (other_words, others)) = (parts(written), parts(measured));
+    let near = |((a, step), (b, other_step)): (&(f64, f64), &(f64, f64))| {
+        let (low, high) = (a.min(*b), a.max(*b));
+        // A tenth of a step for the rounding of the steps themselves.
+        high <= 1.5 * low || high - low <= 1.1 * step.max(*other_step)
+    };
+    words == other_words && figures.iter().zip(&others).all(near)
+}
+
+/// Every case of the table is recorded by one test, and no row is left from a case that is gone. (Reads the tests, for a run may
+/// be of a few of them.)
+#[test]
+fn every_row_has_its_test() {
+    fn sources(folder: &Path, found: &mut Vec<(PathBuf, String)>) {
+        for entry in std::fs::read_dir(folder).expect("a readable folder") {
+            let path = entry.expect("a readable entry").path();
+            if path.is_dir() {
+                sources(&path, found);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                let text = std::fs::read_to_string(&path).expect("a readable file");
+                found.push((path, text));
+            }
+        }
+    }
+    let mut found = Vec::new();
+    sources(&root().join("tests/suite"), &mut found);
+    let tests_of = |case: &str| {
+        let literal = format!("\"{case}\"");
+        found
+            .iter()
+            .map(|(_, text)| text.matches(&literal).count())
+            .sum::<usize>()
+    };
+    let _turn = FILE.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut table = Table::read();
+    if is_update() {
+        table.rows.retain(|row| tests_of(&row.case) > 0);
+        std::fs::write(path(), table.text()).expect("a writable table");
+    }
+    for row in &table.rows {
+        assert_eq!(tests_of(&row.case), 1, "tests that record {:?}", row.case);
+    }
+    let cases: BTreeSet<_> = table.rows.iter().map(|row| &row.case).collect();
+    assert_eq!(cases.len(), table.rows.len(), "each case once");
+    if !is_update() {
+        let text = std::fs::read_to_string(path()).expect("doc/hard_cases.md");
+        assert_eq!(text, table.text(), "doc/hard_cases.md is as it was written");
+    }
+}
+
+/// What the comparison forgives, and what it does not.
+#[test]
+fn the_table_tells_figures_apart() {
+    let pairs = [
+        (
+            "0 wrong of 4000 receivers",
+            "0 wrong of 4100 receivers",
+            true,
+        ),
+        (
+            "0 wrong of 4000 receivers",
+            "2 wrong of 4000 receivers",
+            true,
+        ),
+        (
+            "0 wrong of 4000 receivers",
+            "3 wrong of 4000 receivers",
+            false,
+        ),
+        ("0 wrong of 4000 receivers", "0 wrong of 4000 places", false),
+        (
+            "0 wrong of 4000 receivers",
+            "0 wrong of 4000 receivers, 1 lit",
+            false,
+        ),
+        (
+            "1 wrong of 4000 receivers",
+            "1 wrong of 2000 receivers",
+            false,
+        ),
+        ("0.62 of what is allowed", "0.64 of what is allowed", true),
+        ("0.62 of what is allowed", "0.94 of what is allowed", false),
+        ("rmse 1.2e-5 at 1e6", "rmse 1.7e-5 at 1e6", true),
+        ("rmse 1.2e-5 at 1e6", "rmse 1.9e-5 at 1e6", false),
+        ("rmse 1.2e-5 at 1e6", "rmse 1.2e-4 at 1e6", false),
+        ("as expected", "as expected", true),
+        ("ends at 5.", "ends at 5.", true),
+    ];
+    for (written, measured, wanted) in pairs {
+        assert_eq!(agree(written, measured), wanted, "{written:?} {measured:?}");
+        assert_eq!(agree(measured, written), wanted, "{measured:?} {written:?}");
+    }
+    let mut table = Table::default();
+    table.put(1, "b", "holds", 0, "4 of 9");
+    table.put(0, "a", "holds", 1, "x");
+    table.put(1, "b", "holds still", 1, "5 of 9");
+    let again = Table::parse(&table.text());
+    assert_eq!(again.rows, table.rows);
+    assert_eq!(again.rows[1].measured, ["4 of 9", "5 of 9"]);
+    assert_eq!(again.fault("b", "holds still", Some((0, "4 of 9"))), None);
+    assert_eq!(again.fault("b", "holds still", None), None);
+    assert!(again.fault("b", "holds", None).is_some());
+    assert!(
+        again
+            .fault("b", "holds still", Some((0, "9 of 9")))
+            .is_some()
+    );
+    assert!(
+        again.fault("a", "holds", Some((0, "x"))).is_some(),
+        "never measured there"
+    );
+    assert!(again.fault("c", "holds", None).is_some());
+}
