@@ -59,8 +59,9 @@ pub fn settled(
         let dark_at = |at: DVec3| hides(triangles, at, light);
         let dark = dark_at(place);
         let from_light = -to_light;
-        let side = from_light.any_orthonormal_vector();
-        let across = side.cross(from_light.normalize());
+        let axis = from_light.normalize();
+        let side = axis.any_orthonormal_vector();
+        let across = side.cross(axis);
         let around = (0..16).map(|step| {
             let angle = f64::from(step) * std::f64::consts::TAU / 8.0;
             let radius = tangent * if step < 8 { 1.0 } else { 0.4 };

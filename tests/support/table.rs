@@ -21,11 +21,18 @@ const TOPICS: [(&str, &[&str]); 8] = [
     ),
     (
         "Spot and point lights",
-        &["spot", "omni", "near_lights", "penumbra"],
+        &["spot", "omni", "near_lights", "seam_edges", "penumbra"],
     ),
     (
         "Size, place and motion",
-        &["far_away", "scales", "fit_images", "cascades", "steady"],
+        &[
+            "far_away",
+            "far_lamps",
+            "scales",
+            "fit_images",
+            "cascades",
+            "steady",
+        ],
     ),
     ("Borders of maps", &["out_of_range", "borders"]),
     (

@@ -124,7 +124,7 @@ fn bounds_without_volume_or_without_end() {
     table::record(
         "flat, point, empty and endless bounds",
         "flat bounds cast, empty ones are passed over, endless ones are refused by name",
-        "as expected, by box and by camera".to_owned(),
+        "as expected, by box and by camera",
     );
 }
 
@@ -158,7 +158,7 @@ fn lights_without_length_or_direction() {
     table::record(
         "directions of length 1e-45 to f32::MAX, zero and broken ones",
         "as the unit vector, or refused",
-        "as expected".to_owned(),
+        "as expected",
     );
 }
 
@@ -205,6 +205,6 @@ fn maps_of_every_size() {
     table::record(
         "maps of 1, 2, 3, 7, 8, 33, 1000 and 8192 texels a side, of none and of 8193",
         "nothing shadows itself, shadows from 33 texels on, the last two refused",
-        "as expected".to_owned(),
+        "as expected",
     );
 }

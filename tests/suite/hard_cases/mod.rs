@@ -2,20 +2,26 @@
 //!
 //! Every case compares what it expects and what it measured with the table in `doc/hard_cases.md`.
 
+mod borders;
 mod cascades;
 mod creases;
 mod degenerate;
 mod extreme_cameras;
 mod far_away;
+mod far_lamps;
 mod fuzz;
 mod fuzz_values;
 mod layers;
 mod light_axes;
 mod long_run;
 mod meshes;
+mod near_lights;
+mod near_plane;
 mod scales;
+mod seam_edges;
 mod stage;
 mod steady;
 mod thin_casters;
+mod wall_foot;
 
 use crate::support::table;
