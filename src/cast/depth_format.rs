@@ -8,7 +8,7 @@ pub enum DepthFormat {
     #[default]
     Float32,
     /// 16-bit steps, 2 bytes a texel, for directional lights alone. A step is 1/65535 of the depth range (100 m: 1.5 mm,
-    /// 1 km: 15 mm) and adds so much to the bias, and to the gap that it can leave
+    /// 1 km: 15 mm) and adds so much to the bias, and twice that to the gap that it can leave
     /// ([`ViewReport::worst_gap_world`](crate::ViewReport::worst_gap_world)). It goes unseen while it is below a quarter of a
     /// texel, at ranges under some 16 000 texel sizes; beyond, contacts lose their shadow first.
     ///

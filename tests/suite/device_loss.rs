@@ -14,6 +14,7 @@ use wgpu_shadows::{
 use crate::support::gpu::{Gpu, GpuRequest};
 use crate::support::picture::{color_pass, color_target};
 use crate::support::scene::{Mesh, default_pipeline};
+use crate::support::table;
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
@@ -241,6 +242,11 @@ fn a_lost_device_makes_nothing() {
         refusal,
     };
     assert_eq!(error, Err(wanted));
+    table::record(
+        "a lost device",
+        "every constructor and every frame is a typed error, nothing is recorded, no panic",
+        "as expected, 9 constructors, 5 frames, 1 draw",
+    );
 }
 
 /// A light of another device is refused in the device's own words, and the frame of a light is recorded on its own device only.
@@ -282,6 +288,11 @@ fn a_light_of_another_device_is_refused() {
         assert_eq!(error, Some(ShadowError::OtherDevice));
     }
     assert_eq!(all.record(&here, &[]), [const { None }; 5]);
+    table::record(
+        "a light of another device",
+        "refused by bindings, debug views and frames",
+        "as expected",
+    );
 }
 
 /// More than a software adapter addresses: the limits allow each side and the layers, and memory does not hold them. (OpenGL
@@ -346,4 +357,9 @@ fn maps_larger_than_the_memory() {
             )
         );
     }
+    table::record(
+        "maps of 6 to 120 GiB (on Vulkan in either run: OpenGL does not say when it runs out)",
+        "an error with field and bytes",
+        "as expected, 4 kinds of lights",
+    );
 }

@@ -11,6 +11,7 @@ use wgpu_shadows::{
 use crate::support::gpu::{Gpu, gpu};
 use crate::support::probe::{Point, SunProbe, record};
 use crate::support::scene::{Mesh, default_pipeline};
+use crate::support::table;
 
 /// A square card a unit above the ground; texture coordinates are its x and z from 0 to 1.
 const LEAF: &str = "
@@ -246,6 +247,11 @@ fn a_masked_leaf_has_holes_in_its_shadow() {
     }
     assert_eq!(field.ask(gpu, &[(0.5, 2.5), (2.5, 2.5)]), [0.0, 0.0]);
     assert!(field.ask(gpu, &[(1.5, 2.5)])[0] > 0.999);
+    table::record(
+        "alpha-masked casters between solid ones",
+        "holes where the mask has them, solids beside as without",
+        "as expected",
+    );
 }
 
 #[test]

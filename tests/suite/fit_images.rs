@@ -17,6 +17,7 @@ use crate::support::probe::{Point, SunProbe};
 use crate::support::random_scene::{Placed, World, world};
 use crate::support::rounding::band;
 use crate::support::scene::occluded;
+use crate::support::table;
 
 const MAP_SIZE: u32 = 192;
 /// The default.
@@ -125,6 +126,11 @@ fn every_visible_shadow_is_there_and_no_other() {
         dark > all / 10 && lit > all / 10 && undecided < all / 4,
         "{dark} {lit} {undecided}"
     );
+    table::record(
+        "random scenes, suns, cameras and splits",
+        "what is seen of the floor as the truth says where it is settled",
+        format!("0 wrong of {} settled receivers", dark + lit),
+    );
 }
 
 /// Covers the whole scene, by its bounds or by a camera that holds all of it, so that no f32 matrix of a camera has a say in
@@ -198,6 +204,11 @@ fn a_moved_origin_changes_nothing() {
     run(60, moved, test);
     let (same, flipped) = (same.get(), flipped.get());
     assert!(flipped * 500 <= same, "{flipped} differ of {same}");
+    table::record(
+        "random scenes from another origin",
+        "the same windows to the bit; at most 1 receiver in 500 beyond rounding",
+        format!("{flipped} of {} receivers", same + flipped),
+    );
 }
 
 /// The same world in another unit: no bit of any visibility depends on it. (Powers of two, which change no mantissa.)
@@ -227,5 +238,10 @@ fn another_unit_changes_nothing() {
     assert!(
         dark > 1000 && partial > 100,
         "{dark} dark, {partial} partial"
+    );
+    table::record(
+        "random scenes in units of 2^-20 to 2^20",
+        "bit-identical",
+        format!("0 bits differ in {dark} dark and {partial} partial visibilities"),
     );
 }

@@ -34,5 +34,6 @@ mod self_shadow;
 mod shader_validation;
 mod slice_report;
 mod spot;
+mod spot_input;
 mod stability;
 mod uniform_layout;

@@ -14,6 +14,7 @@ use crate::support::local_truth::settled;
 use crate::support::probe::Point;
 use crate::support::random::Random;
 use crate::support::scene::{Mesh, Scene, Triangle};
+use crate::support::table;
 
 /// All of space receives, so that every caster is drawn, a flat wall with nothing behind it too.
 const EVERYWHERE: [Aabb; 1] = [Aabb::new(Vec3::splat(-40.0), Vec3::splat(40.0))];
@@ -179,7 +180,7 @@ fn seam_scenes(gpu: &Gpu) -> Vec<(String, Scene, DVec3, Vec<Point>)> {
 fn seams_are_lit() {
     let gpu = gpu();
     let scenes = seam_scenes(gpu);
-    let mut failures = Vec::new();
+    let (mut failures, mut asked) = (Vec::new(), 0);
     for (filter, bias) in planar_samplings() {
         let mut lamp = Lamp::new(gpu, SEAM_MAP, filter, bias);
         for (name, scene, light, points) in &scenes {
@@ -190,6 +191,7 @@ fn seams_are_lit() {
                 continue;
             }
             let (dark, darkest) = lamp.false_shadows(gpu, points);
+            asked += points.len();
             if dark > 0 {
                 let (count, lamp) = (points.len(), &lamp.name);
                 failures.push(format!(
@@ -203,6 +205,11 @@ fn seams_are_lit() {
         "{}\n{}",
         gpu.describe(),
         failures.join("\n")
+    );
+    table::record(
+        "edges and corners of a cube, ties included, on planes and in a sphere",
+        "no receiver darker than lit less 1/255, under every filter and derived bias",
+        format!("0 of {asked} receivers"),
     );
 }
 

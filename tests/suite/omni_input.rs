@@ -10,6 +10,7 @@ use crate::support::gpu::gpu;
 use crate::support::probe::Point;
 use crate::support::random::Random;
 use crate::support::scene::{Mesh, Scene};
+use crate::support::table;
 
 const EVERYWHERE: [Aabb; 1] = [Aabb::new(Vec3::splat(-40.0), Vec3::splat(40.0))];
 
@@ -248,6 +249,14 @@ fn odd_lights_get_visibilities() {
         }
     }
     assert!(refused > 0 && dark > 1000, "{refused} refused, {dark} dark");
+    table::record(
+        "point lights on vertices, edges, surfaces and in solids, at up to 1e300, ranges of 1e-38 to infinity",
+        "answers in 0..=1, or a view that f32 cannot hold is refused",
+        format!(
+            "{refused} refused of {}, 0 broken",
+            4 * places.len() * ranges.len()
+        ),
+    );
 }
 
 /// A light on the floor shines over it, and on a face of a box leaves the other sides of the box dark.

@@ -21,6 +21,7 @@ use crate::support::probe::{Point, SunProbe, record};
 use crate::support::readback;
 use crate::support::rounding::band;
 use crate::support::scene::{Mesh, Scene};
+use crate::support::table;
 
 /// WGSL promises sine and cosine to 2^-11 of the unit circle; the widest disk is 32 texels.
 const SAMPLE_ERROR_TEXELS: f64 = 32.0 / 2048.0;
@@ -168,20 +169,25 @@ impl Profile {
         crossing(0.9) - crossing(0.1)
     }
 
-    fn assert_true(&self, name: &str) {
+    /// Returns how far the width is off, as a share of the closed form's, and the rmse.
+    fn assert_true(&self, name: &str) -> [f64; 2] {
         let wanted = chord_of(0.9) - chord_of(0.1);
         let width = self.width();
-        println!(
-            "{name}: width {:.3} of the closed form, rmse {:.4}",
-            width / wanted,
-            self.rmse
-        );
         assert!(
             (width / wanted - 1.0).abs() <= 0.1,
             "{name}: {width} half-widths wide, {wanted} by the closed form"
         );
         assert!(self.rmse <= 0.05, "{name}: rmse {}", self.rmse);
+        [(width / wanted - 1.0).abs(), self.rmse]
     }
+}
+
+fn larger(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0].max(b[0]), a[1].max(b[1])]
+}
+
+fn words([width, rmse]: [f64; 2]) -> String {
+    format!("width within {:.1} %, rmse {rmse:.3}", 100.0 * width)
 }
 
 /// A floor, and a half-plane at height `height` that covers x < 0, turned around y.
@@ -227,6 +233,7 @@ fn sun_profile(gpu: &Gpu, height: f64, diameter: f64, map_size: u32, turn: f64) 
 #[test]
 fn a_sun_spreads_as_its_diameter_says() {
     let gpu = gpu();
+    let mut worst = [0.0; 2];
     for (height, diameter, map_size) in [
         (1.0, 0.2, 512),
         (3.0, 0.2, 512),
@@ -240,14 +247,20 @@ fn a_sun_spreads_as_its_diameter_says() {
             assert!((4.0..30.0).contains(&texels), "{texels}");
             let name =
                 format!("height {height} diameter {diameter} turn {turn:.1} ({texels:.1} texels)");
-            profile.assert_true(&name);
+            worst = larger(worst, profile.assert_true(&name));
         }
     }
+    table::record(
+        "penumbrae of a half-plane under suns of 0.0093 to 0.5 radians",
+        "widths within 10 % of the closed form, rmse at most 0.05",
+        words(worst),
+    );
 }
 
 #[test]
 fn a_spot_spreads_as_its_radius_says() {
     let gpu = gpu();
+    let mut worst = [0.0; 2];
     let above = 6.0;
     for (height, light_size) in [(1.5, 0.2), (3.0, 0.1), (2.0, 0.15)] {
         let descriptor = SpotShadowDescriptor {
@@ -273,8 +286,14 @@ fn a_spot_spreads_as_its_radius_says() {
         let ask = Ask::light(gpu, shadow.source());
         let radius = f64::from(light_size) * height / (above - height);
         let profile = Profile::measure(radius, 0.3, |points| ask.points(gpu, points));
-        profile.assert_true(&format!("spot, height {height} radius {light_size}"));
+        let name = format!("spot, height {height} radius {light_size}");
+        worst = larger(worst, profile.assert_true(&name));
     }
+    table::record(
+        "penumbrae of a half-plane under spots of radius 0.1 to 0.2",
+        "widths within 10 % of the closed form, rmse at most 0.05",
+        words(worst),
+    );
 }
 
 /// The shadow's side next to the foot of a wall is hard, within the two texels of the tent; two metres on it is as wide as

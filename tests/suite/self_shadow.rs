@@ -5,7 +5,7 @@
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
-    Aabb, Bias, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
+    Aabb, Bias, Coverage, DepthFormat, DirectionalFrame, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, Filter, ShadowReport,
 };
 
@@ -14,6 +14,7 @@ use crate::support::probe::{Point, SunProbe, record};
 use crate::support::random::Random;
 use crate::support::readback;
 use crate::support::scene::{Mesh, Scene};
+use crate::support::table;
 
 const TILTS_DEGREES: [f64; 12] = [
     0.0, 0.01, 1.0, 15.0, 45.0, 60.0, 75.0, 85.0, 88.0, 89.0, 89.9, 89.99,
@@ -21,6 +22,7 @@ const TILTS_DEGREES: [f64; 12] = [
 const AZIMUTHS_DEGREES: [f64; 3] = [0.0, 22.5, 135.0];
 const RANGES: [f64; 3] = [1e1, 1e3, 1e5];
 const POINTS: usize = 1024;
+const FLOAT: DepthFormat = DepthFormat::Float32;
 
 /// All filters, with the default's sharpness and with a soft light, under the biases that promise this.
 fn samplings() -> Vec<(Filter, Bias)> {
@@ -159,18 +161,25 @@ struct Sun {
 }
 
 impl Sun {
-    fn new(gpu: &Gpu, map_size: u32, filter: Filter, bias: Bias) -> Self {
+    fn new(
+        gpu: &Gpu,
+        map_size: u32,
+        filter: Filter,
+        bias: Bias,
+        depth_format: DepthFormat,
+    ) -> Self {
         let descriptor = DirectionalShadowDescriptor {
             map_size,
             filter,
             bias,
+            depth_format,
             ..Default::default()
         };
         let shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");
         Self {
             probe: SunProbe::new(gpu, &shadow),
             shadow,
-            name: format!("{filter:?} {bias:?} map {map_size}"),
+            name: format!("{filter:?} {bias:?} map {map_size} {depth_format:?}"),
         }
     }
 
@@ -196,15 +205,18 @@ fn upright_slopes(gpu: &Gpu) -> Vec<Slope> {
     slopes
 }
 
-fn assert_no_false_shadow(map_sizes: &[u32], slopes: &[Slope]) {
+/// Returns how many receivers were asked.
+fn assert_no_false_shadow(format: DepthFormat, map_sizes: &[u32], slopes: &[Slope]) -> usize {
     let gpu = gpu();
     let mut failures = Vec::new();
+    let mut asked = 0;
     for map_size in map_sizes {
         for (filter, bias) in samplings() {
-            let mut sun = Sun::new(gpu, *map_size, filter, bias);
+            let mut sun = Sun::new(gpu, *map_size, filter, bias, format);
             for slope in slopes {
                 let report = slope.record(gpu, &mut sun.shadow);
                 let (dark, darkest) = sun.false_shadows(gpu, slope);
+                asked += POINTS;
                 if report.draws() != 1 {
                     failures.push(format!("{} {}: not drawn", sun.name, slope.name));
                 } else if dark > 0 {
@@ -223,28 +235,57 @@ fn assert_no_false_shadow(map_sizes: &[u32], slopes: &[Slope]) {
         failures.len(),
         failures.join("\n")
     );
+    asked
+}
+
+const LIT: &str = "no receiver darker than lit less 1/255, under every filter and derived bias";
+
+fn lit(asked: usize) -> String {
+    format!("0 of {asked} receivers")
 }
 
 /// Maps down to a single texel, smaller than their filters' kernels: the scene is drawn into them all the same.
 #[test]
 fn slopes_in_tiny_maps_are_lit() {
     let slopes: Vec<_> = upright_slopes(gpu()).into_iter().step_by(7).collect();
-    assert_no_false_shadow(&[1, 2, 3, 8, 16, 64], &slopes);
+    let asked = assert_no_false_shadow(FLOAT, &[1, 2, 3, 8, 16, 64], &slopes);
+    table::record(
+        "planes at 0 to 89.99 degrees to the light in maps of 1 to 64 texels a side",
+        LIT,
+        lit(asked),
+    );
 }
 
 #[test]
 fn slopes_in_small_maps_are_lit() {
-    assert_no_false_shadow(&[170], &upright_slopes(gpu()));
+    assert_no_false_shadow(FLOAT, &[170], &upright_slopes(gpu()));
 }
 
 #[test]
 fn slopes_in_middling_maps_are_lit() {
-    assert_no_false_shadow(&[512], &upright_slopes(gpu()));
+    assert_no_false_shadow(FLOAT, &[512], &upright_slopes(gpu()));
 }
 
 #[test]
 fn slopes_in_large_maps_are_lit() {
-    assert_no_false_shadow(&[2048], &upright_slopes(gpu()));
+    let asked = assert_no_false_shadow(FLOAT, &[2048], &upright_slopes(gpu()));
+    table::record(
+        "planes at 0 to 89.99 degrees to the light, depth ranges of 10 to 1e5, 32-bit maps",
+        LIT,
+        lit(asked),
+    );
+}
+
+/// The step of 16 bits, 1.5 units at a range of 1e5, is part of the derived bias: no angle and no range brings acne.
+#[test]
+fn slopes_in_16_bit_maps_are_lit() {
+    let slopes = upright_slopes(gpu());
+    let asked = assert_no_false_shadow(DepthFormat::Unorm16, &[170, 1024], &slopes);
+    table::record(
+        "planes at 0 to 89.99 degrees to the light, depth ranges of 10 to 1e5, 16-bit maps",
+        LIT,
+        lit(asked),
+    );
 }
 
 #[test]
@@ -256,7 +297,13 @@ fn oblique_slopes_are_lit() {
         .flat_map(|tilt| [tilt; 4])
         .map(|tilt| Slope::oblique(gpu, tilt, 30.0, &mut random))
         .collect();
-    assert_no_false_shadow(&[256], &slopes);
+    let asked = assert_no_false_shadow(FLOAT, &[256], &slopes)
+        + assert_no_false_shadow(DepthFormat::Unorm16, &[256], &slopes);
+    table::record(
+        "planes in any orientation at 0 to 89.99 degrees to light from any side, both depth formats",
+        LIT,
+        lit(asked),
+    );
 }
 
 /// Far from the render origin, where positions, the sheet's corners among them, are rounded to a fraction of a texel and more,
@@ -272,7 +319,13 @@ fn slopes_far_from_the_render_origin_are_lit() {
             slopes.extend((0..3).map(|_| Slope::oblique(gpu, tilt, distance, &mut random)));
         }
     }
-    assert_no_false_shadow(&[200, 1024], &slopes);
+    let asked = assert_no_false_shadow(FLOAT, &[200, 1024], &slopes)
+        + assert_no_false_shadow(DepthFormat::Unorm16, &[200], &slopes);
+    table::record(
+        "planes 1e2 to 1e5 from the render origin, up to 85 degrees to the light, both depth formats",
+        LIT,
+        lit(asked),
+    );
 }
 
 /// The sheets are really in the maps of the tests above, all of their area; and without a bias they shadow themselves, so
@@ -286,7 +339,8 @@ fn the_slopes_are_in_the_map_and_would_shadow_themselves() {
         constant: 0.0,
         slope: 0.0,
     };
-    let mut sun = Sun::new(gpu, 384, Filter::Bilinear { sharpness: 1.0 }, none);
+    let filter = Filter::Bilinear { sharpness: 1.0 };
+    let mut sun = Sun::new(gpu, 384, filter, none, FLOAT);
     for slope in upright_slopes(gpu).iter().chain(&oblique) {
         let report = slope.record(gpu, &mut sun.shadow);
         assert_eq!((report.passes, report.draws()), (1, 1), "{}", slope.name);

@@ -4,9 +4,7 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::{DVec3, Vec3};
-use wgpu_shadows::{
-    Aabb, Bias, Filter, ShadowError, SpotFrame, SpotLight, SpotShadow, SpotShadowDescriptor,
-};
+use wgpu_shadows::{Aabb, Bias, Filter, SpotFrame, SpotLight, SpotShadow, SpotShadowDescriptor};
 
 use crate::support::ask::{Ask, record_spot};
 use crate::support::gpu::{Gpu, gpu};
@@ -15,6 +13,7 @@ use crate::support::probe::Point;
 use crate::support::random::Random;
 use crate::support::rounding::U;
 use crate::support::scene::{Mesh, Scene};
+use crate::support::table;
 
 const EVERYWHERE: [Aabb; 1] = [Aabb::new(Vec3::splat(-60.0), Vec3::splat(60.0))];
 
@@ -110,18 +109,29 @@ fn plane_under(light: &SpotLight, tilt: f64, random: &mut Random) -> (Mesh, Vec<
 
 #[test]
 fn planes_under_any_cone_are_lit() {
-    assert_planes_lit(&CONES_DEGREES[..8]);
+    let asked = assert_planes_lit(&CONES_DEGREES[..8]);
+    table::record(
+        "planes under spot cones of 0.1 to 170 degrees, leaning up to 85 degrees",
+        "no receiver darker than lit less 1/255",
+        format!("0 of {asked} receivers"),
+    );
 }
 
 /// One map of nearly a half space: its texels are wider than the distance to what they see.
 #[test]
 fn planes_under_the_widest_cones_are_lit() {
-    assert_planes_lit(&CONES_DEGREES[8..]);
+    let asked = assert_planes_lit(&CONES_DEGREES[8..]);
+    table::record(
+        "planes under spot cones of 178 to 179.9 degrees, leaning up to 85 degrees",
+        "no receiver darker than lit less 1/255",
+        format!("0 of {asked} receivers"),
+    );
 }
 
-fn assert_planes_lit(cones_degrees: &[f64]) {
+/// Returns how many receivers were asked.
+fn assert_planes_lit(cones_degrees: &[f64]) -> usize {
     let gpu = gpu();
-    let mut failures = Vec::new();
+    let (mut failures, mut asked) = (Vec::new(), 0);
     for (filter, bias) in [
         (Filter::default(), Bias::Auto),
         (Filter::TentWide { sharpness: 1.0 }, Bias::Auto),
@@ -148,6 +158,7 @@ fn assert_planes_lit(cones_degrees: &[f64]) {
                 );
                 spot.record(gpu, &Scene::new(gpu, &[sheet]), light);
                 let seen = spot.ask.points(gpu, &points);
+                asked += seen.len();
                 let dark = seen
                     .iter()
                     .filter(|seen| **seen < 1.0 - 1.0 / 255.0)
@@ -169,6 +180,7 @@ fn assert_planes_lit(cones_degrees: &[f64]) {
         gpu.describe(),
         failures.join("\n")
     );
+    asked
 }
 
 /// Without a bias the same planes shadow themselves, so the test above would see it.
@@ -251,6 +263,11 @@ fn the_cone_ends_at_its_rim() {
             }
         }
     }
+    table::record(
+        "the rim of spot cones of 0.1 to 179 degrees, all occluded",
+        "dark up to the rim and lit beyond, within the rounding of a cosine",
+        "as expected",
+    );
 }
 
 #[test]
@@ -310,86 +327,4 @@ fn shadows_are_where_rays_have_them() {
             truth.assert_agrees(&seen, &format!("{} cone {cone}", spot.name));
         }
     }
-}
-
-#[test]
-fn bad_spots_are_refused() {
-    let gpu = gpu();
-    let scene = Scene::new(gpu, &[Mesh::floor(0.0, 2.0)]);
-    let list = scene.list();
-    let mut spot = Spot::new(gpu, 32, Filter::default(), Bias::Auto);
-    let good = light(DVec3::Y, DVec3::NEG_Y, 60.0, 9.0);
-    spot.record(gpu, &scene, good);
-    let before = spot.shadow.report().clone();
-    let angle = |outer_angle_radians: f32, value: &str| {
-        let light = SpotLight {
-            outer_angle_radians,
-            ..good
-        };
-        let error = ShadowError::OutOfRange {
-            field: "SpotFrame::light.outer_angle_radians",
-            rule: "above 0 and below π/2",
-            value: value.to_owned(),
-        };
-        (light, error)
-    };
-    let toward = |direction: Vec3| SpotLight { direction, ..good };
-    let field = "SpotFrame::light.direction";
-    let half_turn = std::f32::consts::FRAC_PI_2;
-    let cases = [
-        angle(0.0, "0"),
-        angle(-0.5, "-0.5"),
-        angle(f32::NAN, "NaN"),
-        angle(half_turn, &half_turn.to_string()),
-        (toward(Vec3::ZERO), ShadowError::ZeroDirection { field }),
-        (
-            toward(Vec3::new(0.0, f32::NAN, 1.0)),
-            ShadowError::NotFinite {
-                field,
-                value: "[0, NaN, 1]".to_owned(),
-            },
-        ),
-        (
-            SpotLight { range: 0.0, ..good },
-            ShadowError::OutOfRange {
-                field: "SpotFrame::light.range",
-                rule: "above 0 (infinity allowed)",
-                value: "0".to_owned(),
-            },
-        ),
-        (
-            SpotLight {
-                position_world: DVec3::new(0.0, f64::INFINITY, 0.0),
-                ..good
-            },
-            ShadowError::NotFinite {
-                field: "SpotFrame::light.position_world",
-                value: "[0, inf, 0]".to_owned(),
-            },
-        ),
-    ];
-    for (light, wanted) in cases {
-        let frame = SpotFrame {
-            origin: DVec3::ZERO,
-            light,
-            camera: None,
-            casters: &list,
-            receivers: &EVERYWHERE,
-        };
-        let error = record_spot(gpu, &mut spot.shadow, &frame).expect_err("a bad light");
-        assert_eq!(error, wanted);
-        assert_eq!(&before, spot.shadow.report(), "{error}");
-    }
-    let descriptor = SpotShadowDescriptor {
-        filter: Filter::DirectionGrid { radius: 0.1 },
-        ..Default::default()
-    };
-    let refused = SpotShadow::new(&gpu.device, &descriptor).expect_err("a filter of cubes");
-    assert!(matches!(
-        refused,
-        ShadowError::OutOfRange {
-            field: "SpotShadowDescriptor::filter",
-            ..
-        }
-    ));
 }

@@ -2,6 +2,7 @@
 
 pub mod ask;
 pub mod camera;
+pub mod figures;
 pub mod golden;
 pub mod gpu;
 pub mod local_truth;

@@ -2,8 +2,8 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, CasterPipeline, CasterPipelineDescriptor, MeshCaster, MeshCasterDescriptor, MeshIndices,
-    ShadowCaster,
+    Aabb, CasterPipeline, CasterPipelineDescriptor, DepthFormat, MeshCaster, MeshCasterDescriptor,
+    MeshIndices, ShadowCaster,
 };
 
 use crate::support::gpu::Gpu;
@@ -161,8 +161,13 @@ impl Scene {
     }
 }
 
+/// The default pipeline, for maps of both depth formats.
 pub fn default_pipeline(gpu: &Gpu) -> CasterPipeline {
-    CasterPipeline::new(&gpu.device, &CasterPipelineDescriptor::new()).expect("a valid pipeline")
+    let descriptor = CasterPipelineDescriptor {
+        depth_formats: &[DepthFormat::Float32, DepthFormat::Unorm16],
+        ..CasterPipelineDescriptor::new()
+    };
+    CasterPipeline::new(&gpu.device, &descriptor).expect("a valid pipeline")
 }
 
 /// A triangle in render space, f64.

@@ -1,7 +1,9 @@
 //! Worlds that lie far from the world's origin, with and without an engine that renders relative to its camera.
 
 use glam::{DMat3, DVec3};
-use wgpu_shadows::{Aabb, Coverage, DirectionalLight, ShadowViewUniform};
+use wgpu_shadows::{
+    Aabb, Coverage, DepthFormat, DirectionalLight, DirectionalShadowDescriptor, ShadowViewUniform,
+};
 
 use super::stage::{
     MARGIN, Sun, Verdict, any_camera, bounds_of, boxes, level, meshes, scene, shining, world,
@@ -15,12 +17,20 @@ const MAP_SIZE: u32 = 256;
 const FLOOR_HALF: f32 = 7.4;
 
 /// What a frame at `origin` sees of a scene whose fit has texels and depth steps that are powers of two.
-fn look_along(light: DVec3, origin: DVec3) -> (Vec<f32>, Vec<ShadowViewUniform>) {
+fn look_along(
+    light: DVec3,
+    origin: DVec3,
+    depth_format: DepthFormat,
+) -> (Vec<f32>, Vec<ShadowViewUniform>) {
     let mut boxes = boxes();
     // A mast, as high as the covered box, that settles the depth range.
     boxes.push((DVec3::new(6.3, 0.0, 6.1), DVec3::new(6.6, 7.3, 6.4)));
     let scene = scene(&meshes(&boxes, FLOOR_HALF, DMat3::IDENTITY, DVec3::ZERO));
-    let mut sun = Sun::of_size(MAP_SIZE);
+    let mut sun = Sun::new(&DirectionalShadowDescriptor {
+        map_size: MAP_SIZE,
+        depth_format,
+        ..Default::default()
+    });
     // 15 wide under 249 usable texels: 0.0602 each, for which the next size is 1/16; 15 deep: 16.
     sun.record(
         origin,
@@ -47,30 +57,34 @@ fn look_along(light: DVec3, origin: DVec3) -> (Vec<f32>, Vec<ShadowViewUniform>)
 fn a_world_far_away_is_shadowed_to_the_bit() {
     let axes = [DVec3::NEG_Y, DVec3::X, DVec3::NEG_Z];
     let mut compared = 0;
-    for light in axes {
-        let (near, near_views) = look_along(light, DVec3::ZERO);
+    let formats = [DepthFormat::Float32, DepthFormat::Unorm16];
+    for (light, format) in axes
+        .into_iter()
+        .flat_map(|axis| formats.map(|format| (axis, format)))
+    {
+        let (near, near_views) = look_along(light, DVec3::ZERO, format);
         let dark = near.iter().filter(|seen| **seen == 0.0).count();
         assert!(dark > 30 && dark < 2000, "{dark} dark along {light}");
         for exponent in [10, 13, 17, 20, 23, 24] {
             let away = f64::from(exponent).exp2();
             for origin in [DVec3::splat(away), DVec3::new(-away, 2.0 * away, away)] {
-                let (far, far_views) = look_along(light, origin);
+                let (far, far_views) = look_along(light, origin, format);
                 assert_eq!(
                     bytemuck::cast_slice::<_, u8>(&near_views),
                     bytemuck::cast_slice::<_, u8>(&far_views),
-                    "light {light} origin {origin}"
+                    "light {light} origin {origin} {format:?}"
                 );
                 let same = near.iter().zip(&far);
                 assert!(
                     same.clone().all(|(a, b)| a.to_bits() == b.to_bits()),
-                    "light {light} origin {origin}"
+                    "light {light} origin {origin} {format:?}"
                 );
                 compared += far.len();
             }
         }
     }
     table::record(
-        "world coordinates 2^10 to 2^25 with an origin",
+        "world coordinates 2^10 to 2^25 with an origin, both depth formats",
         "bit-identical to the world at zero",
         format!("0 bits differ in {compared} visibilities"),
     );
@@ -139,17 +153,23 @@ fn a_world_anywhere_far_away_is_shadowed_as_the_truth_says() {
 
 /// Without an origin, f32 coordinates of a scene `P` away are off by half an ulp each, at most `2uP` together for caster and
 /// receiver on each axis, and the bias gives way by `4uP`: settled receivers have that much more around them, and no surface
-/// shadows itself.
+/// shadows itself. Beyond 1e5 the scene is a hundred times as large, for an f32 has steps of one unit at 1e7.
 #[test]
 fn render_coordinates_far_away_err_by_no_more_than_their_rounding() {
     let mut all = Verdict::default();
-    let mut finest: f64 = 0.0;
+    let mut most: f64 = 0.0;
     for light in lights() {
         let world = world(light, any_camera());
         let places = floor_places(light);
-        for away in [1e3, 1e4, 1e5] {
+        for (away, unit) in [
+            (1e3, 1.0),
+            (1e4, 1.0),
+            (1e5, 1.0),
+            (1e6, 100.0),
+            (1e7, 100.0),
+        ] {
             let shift = DVec3::new(1.0, 0.0, 0.77) * away;
-            let meshes = meshes(&boxes(), FLOOR_HALF, DMat3::IDENTITY, shift);
+            let meshes = meshes(&boxes(), FLOOR_HALF, DMat3::IDENTITY * unit, shift);
             let scene = scene(&meshes);
             let mut sun = Sun::of_size(MAP_SIZE);
             sun.record(
@@ -161,16 +181,17 @@ fn render_coordinates_far_away_err_by_no_more_than_their_rounding() {
             );
             let texel = sun.texel();
             let rounding = 8.0 * U * away / texel;
-            finest = finest.max(rounding);
-            let seen = sun.ask(&level(&places, shift));
-            let verdict = Verdict::of(&world, &places, &seen, texel, MARGIN + rounding);
+            most = most.max(rounding);
+            let scaled: Vec<_> = places.iter().map(|place| *place * unit).collect();
+            let seen = sun.ask(&level(&scaled, shift));
+            let verdict = Verdict::of(&world, &places, &seen, texel / unit, MARGIN + rounding);
             verdict.assert_right(&format!("light {light} at {away} without an origin"));
             all.add(&verdict);
         }
     }
     table::record(
-        "render coordinates 1e3 to 1e5 without an origin",
+        "render coordinates 1e3 to 1e7 without an origin",
         "settled receivers as the truth says, 8uP more around them",
-        format!("{}, rounding up to {finest:.2} texels", all.words()),
+        format!("{}, rounding up to {most:.2} texels", all.words()),
     );
 }

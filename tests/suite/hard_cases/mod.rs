@@ -6,6 +6,7 @@ mod borders;
 mod cascades;
 mod creases;
 mod degenerate;
+mod depth_steps;
 mod extreme_cameras;
 mod far_away;
 mod far_lamps;
