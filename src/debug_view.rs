@@ -1,7 +1,9 @@
 //! `DebugView`: a depth map as a picture for people.
 
 use bytemuck::{Pod, Zeroable};
+use glam::Mat4;
 
+use crate::cascade_tint::CascadeTint;
 use crate::cast::{capture_device_errors, filled_buffer};
 use crate::error::{DebugViewError, DeviceRefusal};
 use crate::receive::{Selection, ShadowSource, ShadowViewUniform};
@@ -35,10 +37,13 @@ pub enum DebugPicture {
 /// casts. Depths of local lights are shown as linear distance.
 #[derive(Debug)]
 pub struct DebugView {
+    format: wgpu::TextureFormat,
     layer: wgpu::RenderPipeline,
     cross: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
     sampler: wgpu::Sampler,
+    /// None for a format that cannot be blended.
+    tint: Option<CascadeTint>,
 }
 
 impl DebugView {
@@ -52,10 +57,13 @@ impl DebugView {
             format.sample_type(None, Some(device.features())),
             Some(wgpu::TextureSampleType::Float { .. })
         );
-        let renderable = format
-            .guaranteed_format_features(device.features())
+        let features = format.guaranteed_format_features(device.features());
+        let renderable = features
             .allowed_usages
             .contains(wgpu::TextureUsages::RENDER_ATTACHMENT);
+        let blendable = features
+            .flags
+            .contains(wgpu::TextureFormatFeatureFlags::BLENDABLE);
         if !(floats && renderable) {
             return Err(DebugViewError::Format { format });
         }
@@ -68,6 +76,7 @@ impl DebugView {
             });
             let pipeline = |entry| create_pipeline(device, &layout, &module, entry, format);
             Self {
+                format,
                 layer: pipeline("shadow_debug_layer"),
                 cross: pipeline("shadow_debug_cross"),
                 sampler: device.create_sampler(&wgpu::SamplerDescriptor {
@@ -75,6 +84,7 @@ impl DebugView {
                     ..Default::default()
                 }),
                 layout,
+                tint: blendable.then(|| CascadeTint::new(device, format)),
             }
         };
         capture_device_errors(device, create).map_err(not_made("the pipelines of a debug view"))
@@ -127,6 +137,31 @@ impl DebugView {
         pass.set_bind_group(0, &bind_group, &[]);
         pass.draw(0..3, 0..1);
         Ok(())
+    }
+
+    /// Multiplies the picture in `pass` by a colour for the view of `source` that serves each pixel: red, green, blue, yellow,
+    /// cyan, magenta, orange, violet for the first eight layers, grey where none does. `depth` is a single-sampled depth
+    /// texture of the picture, of the viewport's shape, and `render_from_clip` the inverse of its camera's matrix; depths of 0
+    /// and 1 count as sky. Sets pipeline and bind group 0.
+    ///
+    /// Where an engine can change its shader instead, `shadow_view_NAME(position)` says the same.
+    ///
+    /// # Errors
+    /// [`DebugViewError::Format`] where the target cannot be blended; [`DebugViewError::Device`] for a device that is lost,
+    /// out of memory, or not the light's own, or a `depth` that it cannot sample. Nothing is drawn then.
+    pub fn draw_cascades(
+        &self,
+        device: &wgpu::Device,
+        pass: &mut wgpu::RenderPass<'_>,
+        source: ShadowSource<'_>,
+        depth: &wgpu::TextureView,
+        render_from_clip: Mat4,
+    ) -> Result<(), DebugViewError> {
+        let tint = self.tint.as_ref().ok_or(DebugViewError::Format {
+            format: self.format,
+        })?;
+        tint.draw(device, pass, &source.receiver, depth, render_from_clip)
+            .map_err(not_made("the bind group of a debug view"))
     }
 
     fn bind_group(

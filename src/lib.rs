@@ -46,6 +46,7 @@
 #![forbid(unsafe_code)]
 
 mod aabb;
+mod cascade_tint;
 mod cast;
 mod check;
 mod debug_view;

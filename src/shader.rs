@@ -34,6 +34,8 @@ pub(crate) const CASTER_BUILTIN: ShaderModule =
     module!("caster_builtin", "pass/caster_builtin.wgsl", ["caster"]);
 pub(crate) const DEBUG_VIEW: ShaderModule =
     module!("debug_view", "pass/debug_view.wgsl", ["view", "cube_face"]);
+pub(crate) const CASCADE_TINT: ShaderModule =
+    module!("cascade_tint", "pass/cascade_tint.wgsl", ["view"]);
 
 /// Every WGSL text of the library.
 pub const MODULES: &[ShaderModule] = &[
@@ -76,6 +78,7 @@ pub const MODULES: &[ShaderModule] = &[
     CASTER,
     CASTER_BUILTIN,
     DEBUG_VIEW,
+    CASCADE_TINT,
 ];
 
 /// The texts of the named modules and of all that they require, each once, in table order.

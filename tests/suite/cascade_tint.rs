@@ -1,0 +1,214 @@
+//! `DebugView::draw_cascades`: each pixel has the colour of the view that serves what is seen there.
+
+use glam::{DVec3, DVec4, Mat4};
+use wgpu_shadows::{
+    Coverage, DebugView, DebugViewError, DirectionalFrame, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, reference,
+};
+
+use crate::support::camera::Camera;
+use crate::support::gpu::{Gpu, gpu};
+use crate::support::picture::{COLOR, color_target};
+use crate::support::probe::record;
+use crate::support::readback;
+use crate::support::scene::{Mesh, Scene};
+
+const SIZE: u32 = 96;
+
+/// As in `wgsl/pass/cascade_tint.wgsl`, for three cascades and for none.
+const TINTS: [[f64; 3]; 4] = [
+    [1.0, 0.35, 0.3],
+    [0.35, 1.0, 0.3],
+    [0.35, 0.5, 1.0],
+    [0.6, 0.6, 0.6],
+];
+
+/// A pass over `target` that clears it to `color`, or only the depth of `depth` to `value`.
+fn cleared<'a>(
+    encoder: &'a mut wgpu::CommandEncoder,
+    target: Option<&wgpu::TextureView>,
+    depth: Option<(&wgpu::TextureView, f32)>,
+) -> wgpu::RenderPass<'a> {
+    let color = target.map(|view| wgpu::RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: wgpu::Operations {
+            load: wgpu::LoadOp::Clear(wgpu::Color::WHITE),
+            store: wgpu::StoreOp::Store,
+        },
+    });
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &[color][..usize::from(target.is_some())],
+        depth_stencil_attachment: depth.map(|(view, value)| {
+            wgpu::RenderPassDepthStencilAttachment {
+                view,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(value),
+                    store: wgpu::StoreOp::Store,
+                }),
+                stencil_ops: None,
+            }
+        }),
+        ..Default::default()
+    })
+}
+
+/// The tint of a picture whose depth is `depth` everywhere.
+fn tint(gpu: &Gpu, shadow: &DirectionalShadow, camera: &Camera, depth: f32) -> image::RgbaImage {
+    let view = DebugView::new(&gpu.device, COLOR).expect("a format for pictures");
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("depth"),
+        size: wgpu::Extent3d {
+            width: SIZE,
+            height: SIZE,
+            depth_or_array_layers: 1,
+        },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Depth32Float,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    let depth_view = texture.create_view(&Default::default());
+    let target = color_target(gpu, SIZE);
+    let target_view = target.create_view(&Default::default());
+    let clip_from_render = camera.clip_from_view() * camera.view_from_render();
+    let mut encoder = gpu.encoder();
+    drop(cleared(&mut encoder, None, Some((&depth_view, depth))));
+    let mut pass = cleared(&mut encoder, Some(&target_view), None);
+    view.draw_cascades(
+        &gpu.device,
+        &mut pass,
+        shadow.source(),
+        &depth_view,
+        clip_from_render.inverse().as_mat4(),
+    )
+    .expect("a depth texture");
+    drop(pass);
+    gpu.submit(encoder);
+    readback::rgba8(gpu, &target)
+}
+
+/// On planes at several depths, every pixel has the colour of the first cascade that holds its place in f64. Places within
+/// `1e-3` of themselves of a border may go either way: matrices of f32 err by 1e-6 of a distance of some tens.
+#[test]
+fn pixels_have_the_colours_of_their_cascades() {
+    let gpu = gpu();
+    let mut meshes = vec![Mesh::floor(0.0, 60.0)];
+    for row in 0..8 {
+        let low = DVec3::new(-2.0, 0.0, 3.0 + 6.0 * f64::from(row)).as_vec3();
+        meshes.push(Mesh::cuboid(low, low + 2.0));
+    }
+    let scene = Scene::new(gpu, &meshes);
+    let camera = Camera::modern(
+        DVec3::new(0.0, 3.0, -4.0),
+        DVec3::new(0.5, 0.0, 20.0),
+        0.9,
+        1.0,
+    );
+    let mut shadow = DirectionalShadow::new(
+        &gpu.device,
+        &DirectionalShadowDescriptor {
+            map_size: 128,
+            cascades: 3,
+            ..Default::default()
+        },
+    )
+    .expect("a valid sun");
+    let frame = DirectionalFrame {
+        origin: DVec3::ZERO,
+        light: DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2).as_vec3()),
+        coverage: Coverage::Camera(camera.view().with_max_distance(50.0)),
+        casters: &scene.list(),
+        receivers: &[],
+    };
+    record(gpu, &mut shadow, &frame);
+    let render_from_clip = (camera.clip_from_view() * camera.view_from_render()).inverse();
+    let mut seen = [0; 4];
+    for distance in [3.0, 6.0, 12.0, 25.0, 45.0] {
+        let along = camera.pose.eye - camera.pose.axes.z_axis * distance;
+        let clip = camera.clip_from_view() * camera.view_from_render() * along.extend(1.0);
+        let depth = (clip.z / clip.w) as f32;
+        let image = tint(gpu, &shadow, &camera, depth);
+        for (x, y, pixel) in image.enumerate_pixels() {
+            let ndc = |pixel: u32| (f64::from(pixel) + 0.5) / f64::from(SIZE) * 2.0 - 1.0;
+            let place = render_from_clip * DVec4::new(ndc(x), -ndc(y), f64::from(depth), 1.0);
+            let place = place.truncate() / place.w;
+            let serving = |place: DVec3| {
+                let mut views = shadow.view_uniforms().iter();
+                views
+                    .position(|view| reference::holds(view, place))
+                    .unwrap_or(3)
+            };
+            let cascade = serving(place);
+            let near = [-1e-3, 1e-3].map(|share| {
+                let to_light = DVec3::new(-0.3, 1.0, -0.2).normalize();
+                let aside = camera.pose.axes.x_axis + camera.pose.axes.y_axis + to_light;
+                serving(place + aside * share * distance)
+            });
+            if near != [cascade; 2] {
+                continue;
+            }
+            seen[cascade] += 1;
+            for (channel, wanted) in pixel.0.iter().zip(TINTS[cascade]) {
+                // Half a step of 8 bits, and f32's rounding of it.
+                let error = (f64::from(*channel) - wanted * 255.0).abs();
+                assert!(
+                    error <= 0.51,
+                    "{x}, {y} at {distance}: {pixel:?} for {cascade}"
+                );
+            }
+        }
+    }
+    assert!(seen.iter().all(|count| *count > 200), "{seen:?}");
+    // Nothing drawn, by either convention: the picture stays as it is.
+    for sky in [0.0, 1.0] {
+        let image = tint(gpu, &shadow, &camera, sky);
+        assert!(image.pixels().all(|pixel| pixel.0 == [255; 4]), "{sky}");
+    }
+}
+
+/// A target that cannot be blended shows maps but no tints; a texture that is no depth is refused. The pass goes on.
+#[test]
+fn what_cannot_be_tinted_is_refused() {
+    let gpu = gpu();
+    let shadow = DirectionalShadow::new(
+        &gpu.device,
+        &DirectionalShadowDescriptor {
+            map_size: 16,
+            ..Default::default()
+        },
+    )
+    .expect("a valid sun");
+    let target = color_target(gpu, 16);
+    let target_view = target.create_view(&Default::default());
+    let unblendable = DebugView::new(&gpu.device, wgpu::TextureFormat::Rgba32Float);
+    let unblendable = unblendable.expect("a renderable float format");
+    let blendable = DebugView::new(&gpu.device, COLOR).expect("a format for pictures");
+    let mut encoder = gpu.encoder();
+    let mut pass = cleared(&mut encoder, Some(&target_view), None);
+    let mut draw = |view: &DebugView, depth| {
+        view.draw_cascades(
+            &gpu.device,
+            &mut pass,
+            shadow.source(),
+            depth,
+            Mat4::IDENTITY,
+        )
+    };
+    let refused = draw(&unblendable, &target_view).expect_err("no blending");
+    assert!(
+        matches!(refused, DebugViewError::Format { .. }),
+        "{refused}"
+    );
+    let other = color_target(gpu, 16).create_view(&Default::default());
+    let refused = draw(&blendable, &other).expect_err("no depth");
+    assert!(
+        matches!(refused, DebugViewError::Device { .. }),
+        "{refused}"
+    );
+    drop(pass);
+    gpu.submit(encoder);
+}
