@@ -184,7 +184,7 @@ impl DirectionalShadow {
                 map_size: descriptor.map_size,
                 layers: descriptor.cascades,
                 sampling,
-                selection: Selection::FirstInside,
+                selection: Selection::Cascades,
                 views_per_light: descriptor.cascades,
                 indexed: false,
             },

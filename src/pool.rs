@@ -319,7 +319,7 @@ pool!(
     SpotShadowPool,
     SpotLight,
     1,
-    Selection::FirstInside,
+    Selection::OneView,
     check::planar_filter,
     |entry| entry.light.placement(
         entry.slot.index,

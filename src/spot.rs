@@ -109,7 +109,7 @@ impl SpotShadow {
                 map_size: descriptor.map_size,
                 layers: 1,
                 sampling: Sampling::new(descriptor.filter, descriptor.bias),
-                selection: Selection::FirstInside,
+                selection: Selection::OneView,
                 views_per_light: 1,
                 indexed: false,
             },

@@ -67,13 +67,18 @@ struct ShadowReceiver {
 // and within its cone and range? Where it does not, the place is lit.
 fn shadow_view_holds(view: ShadowView, position: vec3<f32>) -> bool {
     let relative = position - view.anchor;
-    let place = view.texel_from_anchor * vec4<f32>(relative, 1.0);
-    let texel = place.xy / place.w;
-    let within = all(texel >= view.inner.xy) && all(texel <= view.inner.zw);
     let distance_squared = dot(relative, relative);
     let reached = distance_squared <= view.range * view.range
         && -dot(relative, view.light.xyz) >= view.cone_cosine * sqrt(distance_squared);
-    return within && reached && place.w > 0.0 && place.z >= 0.0;
+    return reached && shadow_view_covers(view, position);
+}
+
+// The same of a directional light, which has neither cone nor range.
+fn shadow_view_covers(view: ShadowView, position: vec3<f32>) -> bool {
+    let place = view.texel_from_anchor * vec4<f32>(position - view.anchor, 1.0);
+    let texel = place.xy / place.w;
+    let within = all(texel >= view.inner.xy) && all(texel <= view.inner.zw);
+    return within && place.w > 0.0 && place.z >= 0.0;
 }
 
 // Weight of a cascade at a place that it holds, where cascades blend: one, and less in the last texels before its border. Never

@@ -31,8 +31,10 @@ pub(crate) struct Receiver<'a> {
 /// How a place chooses among a light's views; everything after the choice is the same for all lights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Selection {
-    /// The first view that holds the whole kernel: cascades, near to far, or the one view of a spot.
-    FirstInside,
+    /// The first view that holds the whole kernel: the cascades of a directional light, near to far.
+    Cascades,
+    /// There is one: a spot.
+    OneView,
     /// The face of a cube, by the major axis from the light.
     CubeFace,
 }

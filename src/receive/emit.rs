@@ -52,7 +52,8 @@ fn light_wgsl(name: &str, receiver: &Receiver<'_>, binding: u32) -> String {
         ("", "")
     };
     let choice = match receiver.selection {
-        Selection::FirstInside => first_that_holds(name, receiver),
+        Selection::Cascades => first_that_covers(name, receiver),
+        Selection::OneView => view_that_holds(name, receiver, String::new()),
         Selection::CubeFace => face_that_holds(name, receiver),
     };
     let blends = receiver.sampling.blend > 0.0 && count > 1;
@@ -79,12 +80,12 @@ fn shadow_{name}({parameter}position: vec3<f32>, normal: vec3<f32>) -> f32 {{
     )
 }
 
-/// The first of a light's views that holds the place: cascades, near to far, or the one view of a spot.
-fn first_that_holds(name: &str, receiver: &Receiver<'_>) -> String {
-    let (first, end) = view_range(receiver);
+/// The first of a light's cascades that covers the place. A directional light has neither range nor cone to ask for.
+fn first_that_covers(name: &str, receiver: &Receiver<'_>) -> String {
+    let count = receiver.view_count;
     format!(
-        "    for (var view = {first}; view < {end}; view++) {{
-        if shadow_view_holds(shadow_views_{name}[view], position) {{
+        "    for (var view = 0u; view < {count}u; view++) {{
+        if shadow_view_covers(shadow_views_{name}[view], position) {{
             return view;
         }}
     }}
@@ -94,9 +95,16 @@ fn first_that_holds(name: &str, receiver: &Receiver<'_>) -> String {
 
 /// The face on which the place lies as seen from the light, if it holds it.
 fn face_that_holds(name: &str, receiver: &Receiver<'_>) -> String {
+    let (first, _) = view_range(receiver);
+    let face = format!(" + shadow_cube_face(position - shadow_views_{name}[{first}].anchor)");
+    view_that_holds(name, receiver, face)
+}
+
+/// The light's first view, or so many after it, if it holds the place.
+fn view_that_holds(name: &str, receiver: &Receiver<'_>, after_first: String) -> String {
     let (first, end) = view_range(receiver);
     format!(
-        "    let view = {first} + shadow_cube_face(position - shadow_views_{name}[{first}].anchor);
+        "    let view = {first}{after_first};
     if view < {end} && shadow_view_holds(shadow_views_{name}[view], position) {{
         return view;
     }}
@@ -140,7 +148,7 @@ fn blended_lookup(name: &str, receiver: &Receiver<'_>) -> String {
         "    var lit = 0.0;
     var share = 0.0;
     for (var view = shadow_view_{name}(position); view < {count}u && share < 1.0; view++) {{
-        if shadow_view_holds(shadow_views_{name}[view], position) {{
+        if shadow_view_covers(shadow_views_{name}[view], position) {{
             let weight = (1.0 - share) * shadow_view_weight(shadow_views_{name}[view], position);
             let receiver = {make_receiver}(shadow_views_{name}[view], position, normal);
             lit += weight * {lookup};
