@@ -109,7 +109,12 @@ impl LightMaps {
         Ok(Self {
             device: device.clone(),
             map,
-            recorder: Recorder::new(device, label, layers)?,
+            recorder: Recorder::new(
+                device,
+                label,
+                layers,
+                descriptor.selection == Selection::CubeFace && !descriptor.indexed,
+            )?,
             uniforms: UploadBuffer::new(
                 device,
                 &format!("{label} views"),
@@ -223,7 +228,7 @@ impl LightMaps {
         self.uniforms.commit(encoder, upload);
         self.report.passes = self
             .recorder
-            .record(encoder, &self.map, prepared, &mut views, casters);
+            .record(device, encoder, &self.map, prepared, &mut views, casters);
         self.memory.uniforms = std::mem::replace(&mut self.uniform_values, uniform_values);
         let mut old_views = std::mem::replace(&mut self.views, views);
         let lists = old_views.drain(..).map(|draws| draws.casters);

@@ -25,7 +25,8 @@ pub struct ViewReport {
     pub layer: u32,
     /// Drawn, kept or empty.
     pub status: ViewStatus,
-    /// Casters in the view: the draws of its pass, where there was one, and what was copied.
+    /// Casters in the view: the draws of its pass, where there was one, and what was copied. In one pass with
+    /// other faces, all that it draws.
     pub casters: u32,
     /// Casters of these that were not drawn: they stood still for some frames, and the layer that is kept of them was copied
     /// under the others.
@@ -68,16 +69,22 @@ impl ViewReport {
 pub struct ShadowReport {
     /// One entry per view, in the order of layers.
     pub views: Vec<ViewReport>,
-    /// Depth passes recorded: one per drawn view, two where what stands still was drawn into a layer of its own first.
+    /// Depth passes recorded: one per drawn view, two where what stands still was drawn into a layer of its own first; a single
+    /// one for all faces of a point light where that is cheaper ([`OmniShadow`](crate::OmniShadow) tells when).
     pub passes: u32,
     /// Device memory of the depth texture and of the layers that are kept of what stands still.
     pub bytes_held: u64,
 }
 
 impl ShadowReport {
-    /// Casters drawn, summed over the views that were drawn.
+    /// Casters drawn: once for each view that was drawn, or once in all where six faces were drawn in one pass.
     pub fn draws(&self) -> u32 {
-        self.drawn().map(|view| view.casters - view.copied).sum()
+        let draws = self.drawn().map(|view| view.casters - view.copied);
+        if self.passes == 1 {
+            draws.max().unwrap_or(0)
+        } else {
+            draws.sum()
+        }
     }
 
     /// Triangles drawn, summed over the views that were drawn, as far as casters tell.

@@ -32,6 +32,13 @@ macro_rules! module {
 pub(crate) const CASTER: ShaderModule = module!("caster", "caster.wgsl", []);
 pub(crate) const CASTER_BUILTIN: ShaderModule =
     module!("caster_builtin", "pass/caster_builtin.wgsl", ["caster"]);
+pub(crate) const CASTER_MULTIVIEW: ShaderModule =
+    module!("caster_multiview", "caster_multiview.wgsl", []);
+pub(crate) const CASTER_BUILTIN_MULTIVIEW: ShaderModule = module!(
+    "caster_builtin_multiview",
+    "pass/caster_builtin_multiview.wgsl",
+    ["caster_multiview"]
+);
 pub(crate) const DEBUG_VIEW: ShaderModule =
     module!("debug_view", "pass/debug_view.wgsl", ["view", "cube_face"]);
 pub(crate) const CASCADE_TINT: ShaderModule =
@@ -77,6 +84,8 @@ pub const MODULES: &[ShaderModule] = &[
     module!("normal", "normal.wgsl", []),
     CASTER,
     CASTER_BUILTIN,
+    CASTER_MULTIVIEW,
+    CASTER_BUILTIN_MULTIVIEW,
     DEBUG_VIEW,
     CASCADE_TINT,
 ];

@@ -37,10 +37,19 @@ pub trait ShadowCaster {
     fn pipeline(&self) -> &CasterPipeline;
 
     /// Sets vertex and index buffers and draws. Pipeline and bind group 0 are set already; groups 1 and up are the caster's.
-    /// `view` is the depth render being recorded, for engines that choose a level of detail by texel size.
+    /// `view` is the depth render being recorded, for engines that choose a level of detail by texel size; where
+    /// six faces are drawn at once, it is one of them.
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &ShadowView);
 
-    /// Triangles that [`ShadowCaster::draw`] draws into one view, for the report's counts alone. Zero where they are not known.
+    /// True where [`ShadowCaster::draw`] makes the same calls whatever `view` it is given: a point light may then draw it into
+    /// all six faces at once ([`OmniShadow`](crate::OmniShadow) tells when). The default says false, which always gives a right
+    /// picture. A caster that chooses by `view` and yet says true is drawn as it chose for one of the faces.
+    fn same_in_every_view(&self) -> bool {
+        false
+    }
+
+    /// Triangles that [`ShadowCaster::draw`] draws into one view: for the report's counts, and to choose the cheaper way to
+    /// draw; no picture depends on it. Zero where they are not known.
     fn triangles(&self) -> u32 {
         0
     }

@@ -189,6 +189,10 @@ impl ShadowCaster for MeshCaster {
         }
     }
 
+    fn same_in_every_view(&self) -> bool {
+        true
+    }
+
     fn triangles(&self) -> u32 {
         let corners = match &self.indices {
             MeshIndices::None { vertices } => vertices.len(),

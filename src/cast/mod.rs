@@ -9,16 +9,23 @@
 //! depth_map.rs    the layered depth texture
 //! content.rs      what a layer holds, and what a frame must draw
 //! recorder.rs     the passes
+//! cube_pass.rs    six faces in one pass; cube_pipeline.rs: the pipelines for it
+//! cube_rule.rs    when one pass is cheaper than a pass each
+//! multiview.rs    which devices draw six views at once, rightly
 //! upload.rs       uniform buffers written in command order
 //! device_scope.rs device errors as values
 //! ```
 
 mod caster;
 mod content;
+mod cube_pass;
+mod cube_pipeline;
+mod cube_rule;
 mod depth_format;
 mod depth_map;
 mod device_scope;
 mod mesh;
+mod multiview;
 mod pipeline;
 mod pipeline_build;
 mod recorder;
@@ -35,6 +42,9 @@ pub use pipeline::{
 };
 pub(crate) use recorder::Recorder;
 pub(crate) use upload::UploadBuffer;
+
+/// Nothing casts (reversed depth).
+const CLEAR: wgpu::LoadOp<f32> = wgpu::LoadOp::Clear(0.0);
 
 /// A depth attachment that keeps what is drawn.
 fn depth_attachment(

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::cast::cube_pipeline::CubePipelines;
 use crate::cast::pipeline_build::{ByFormat, create_pipelines};
 use crate::cast::{DepthFormat, capture_device_errors};
 use crate::error::CasterError;
@@ -64,7 +65,8 @@ pub enum CasterVertex<'a> {
     },
     /// The engine's WGSL on top of the library's caster module, for skinning, displacement and alpha masks.
     ///
-    /// The source may call `shadow_caster_clip(position_render: vec3<f32>) -> vec4<f32>` and must not use `@group(0)`.
+    /// The source may call `shadow_caster_clip(position_render: vec3<f32>) -> vec4<f32>` and must not use `@group(0)`. It is
+    /// drawn into one view at a time: a point light with such a caster draws a pass for each face.
     Wgsl {
         /// WGSL with the entry points; the caster module is put before it.
         source: &'a str,
@@ -138,6 +140,7 @@ struct Variants {
     by_format: ByFormat,
     /// None for the engine's own WGSL.
     built_in: Option<(PositionAttribute, ModelTransform)>,
+    cube: Option<CubePipelines>,
     topology: wgpu::PrimitiveTopology,
     strip_index_format: Option<wgpu::IndexFormat>,
 }
@@ -179,6 +182,7 @@ impl CasterPipeline {
             variants: Arc::new(Variants {
                 by_format,
                 built_in,
+                cube: CubePipelines::of(descriptor),
                 topology: descriptor.topology,
                 strip_index_format: descriptor.strip_index_format,
             }),
@@ -206,6 +210,11 @@ impl CasterPipeline {
         self.variants
             .built_in
             .map_or(ModelTransform::Identity, |(_, model)| model)
+    }
+
+    /// The pipeline that draws the six faces of a cube in one pass; none for the engine's own WGSL.
+    pub(crate) fn six_views(&self, device: &wgpu::Device) -> Option<&wgpu::RenderPipeline> {
+        self.variants.cube.as_ref()?.get(device, self.mirrored)
     }
 
     /// Triangles of so many corners; of a strip, without counting restarts.

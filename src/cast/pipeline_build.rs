@@ -1,6 +1,9 @@
 //! The wgpu side of caster pipelines: layouts, vertex state, depth state.
 
+use std::num::NonZeroU32;
+
 use crate::cast::DepthFormat;
+use crate::cast::multiview::{FACE_COUNT, SIX_VIEWS};
 use crate::cast::pipeline::{
     CasterPipelineDescriptor, CasterVertex, ModelTransform, PositionAttribute,
 };
@@ -21,7 +24,7 @@ pub(crate) fn create_pipelines(
     match descriptor.vertex {
         CasterVertex::BuiltIn { position, model } => {
             let source = [shader::CASTER.source, shader::CASTER_BUILTIN.source].concat();
-            built_in(device, descriptor, &source, &position, &model)
+            built_in(device, descriptor, &source, &position, &model, None)
         }
         CasterVertex::Wgsl {
             source,
@@ -37,23 +40,51 @@ pub(crate) fn create_pipelines(
                 fragment_entry,
                 buffers,
                 bind_group_layouts,
+                multiview_mask: None,
             };
             create_by_format(device, descriptor, &stages)
         }
     }
 }
 
+/// The built-in vertex stage for six views a pass.
+pub(crate) fn six_views(
+    device: &wgpu::Device,
+    descriptor: &CasterPipelineDescriptor<'_>,
+    position: &PositionAttribute,
+    model: &ModelTransform,
+) -> ByFormat {
+    let modules = [shader::CASTER_MULTIVIEW, shader::CASTER_BUILTIN_MULTIVIEW];
+    let source = modules.map(|module| module.source).concat();
+    built_in(device, descriptor, &source, position, model, SIX_VIEWS)
+}
+
 /// Layout of bind group 0: the view being rendered, chosen by a dynamic offset.
 pub(crate) fn view_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    uniform_layout(device, "shadow caster view", VIEW_UNIFORM_BYTES, true)
+}
+
+/// Layout of bind group 0 where six views are rendered at once.
+pub(crate) fn six_views_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let bytes = VIEW_UNIFORM_BYTES * u64::from(FACE_COUNT);
+    uniform_layout(device, "shadow caster faces", bytes, false)
+}
+
+fn uniform_layout(
+    device: &wgpu::Device,
+    label: &str,
+    bytes: u64,
+    has_dynamic_offset: bool,
+) -> wgpu::BindGroupLayout {
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("shadow caster view"),
+        label: Some(label),
         entries: &[wgpu::BindGroupLayoutEntry {
             binding: 0,
             visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
             ty: wgpu::BindingType::Buffer {
                 ty: wgpu::BufferBindingType::Uniform,
-                has_dynamic_offset: true,
-                min_binding_size: wgpu::BufferSize::new(VIEW_UNIFORM_BYTES),
+                has_dynamic_offset,
+                min_binding_size: wgpu::BufferSize::new(bytes),
             },
             count: None,
         }],
@@ -66,6 +97,7 @@ fn built_in(
     source: &str,
     position: &PositionAttribute,
     model: &ModelTransform,
+    multiview_mask: Option<NonZeroU32>,
 ) -> ByFormat {
     let position_attribute = [wgpu::VertexAttribute {
         format: position.format,
@@ -83,6 +115,7 @@ fn built_in(
         fragment_entry: None,
         buffers: std::slice::from_ref(&positions),
         bind_group_layouts: &[],
+        multiview_mask,
     };
     let ModelTransform::InstanceMatrix {
         array_stride,
@@ -114,6 +147,7 @@ struct Stages<'a> {
     fragment_entry: Option<&'a str>,
     buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
     bind_group_layouts: &'a [Option<&'a wgpu::BindGroupLayout>],
+    multiview_mask: Option<NonZeroU32>,
 }
 
 fn create_by_format(
@@ -126,7 +160,10 @@ fn create_by_format(
         label: Some(label),
         source: wgpu::ShaderSource::Wgsl(stages.source.into()),
     });
-    let view_layout = view_layout(device);
+    let view_layout = match stages.multiview_mask {
+        None => view_layout(device),
+        Some(_) => six_views_layout(device),
+    };
     let mut groups = vec![Some(&view_layout)];
     groups.extend_from_slice(stages.bind_group_layouts);
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -165,7 +202,7 @@ fn create_by_format(
                 compilation_options: Default::default(),
                 targets: &[],
             }),
-            multiview_mask: None,
+            multiview_mask: stages.multiview_mask,
             cache: None,
         })
     };

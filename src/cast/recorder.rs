@@ -3,9 +3,12 @@
 use bytemuck::{Pod, Zeroable};
 
 use crate::cast::content::{Content, Plan, ViewDraws};
+use crate::cast::cube_pass::{CubePass, PreparedCubePass};
 use crate::cast::pipeline_build::view_layout;
 use crate::cast::upload::{PendingUpload, UploadBuffer};
-use crate::cast::{CasterPipeline, DepthFormat, DepthMap, ShadowCaster, capture_device_errors};
+use crate::cast::{
+    CLEAR, CasterPipeline, DepthFormat, DepthMap, ShadowCaster, capture_device_errors,
+};
 use crate::{ShadowError, ShadowView};
 
 /// Mirror of `ShadowCasterView` in `wgsl/caster.wgsl`.
@@ -29,6 +32,8 @@ pub(crate) struct Recorder {
     layers: Vec<Layer>,
     /// wgpu's OpenGL backend copies no depth textures; there all casters of a view are drawn again.
     can_copy: bool,
+    /// Where the layers are the faces of a cube and the device can draw them at once.
+    cube: Option<CubePass>,
 }
 
 #[derive(Debug)]
@@ -42,6 +47,8 @@ struct Layer {
 /// Everything that could fail, done before the encoder is touched.
 pub(crate) struct PreparedViews {
     upload: Option<PendingUpload>,
+    /// In place of a pass for each view.
+    cube: Option<PreparedCubePass>,
 }
 
 impl CasterViewUniform {
@@ -55,8 +62,13 @@ impl CasterViewUniform {
 }
 
 impl Recorder {
-    /// For maps of `layers` layers.
-    pub fn new(device: &wgpu::Device, label: &str, layers: u32) -> Result<Self, ShadowError> {
+    /// For maps of `layers` layers; `is_cube` where they are the six faces of one.
+    pub fn new(
+        device: &wgpu::Device,
+        label: &str,
+        layers: u32,
+        is_cube: bool,
+    ) -> Result<Self, ShadowError> {
         let alignment = u64::from(device.limits().min_uniform_buffer_offset_alignment);
         let stride = VIEW_UNIFORM_BYTES.next_multiple_of(alignment);
         let uniforms = UploadBuffer::new(
@@ -95,6 +107,11 @@ impl Recorder {
             bind_group,
             layers: layers.collect(),
             can_copy: device.adapter_info().backend != wgpu::Backend::Gl,
+            cube: if is_cube {
+                CubePass::new(device, label)?
+            } else {
+                None
+            },
         })
     }
 
@@ -123,7 +140,7 @@ impl Recorder {
         self.bytes.clear();
         self.bytes
             .resize(self.stride as usize * self.layers.len(), 0);
-        for draws in views {
+        for draws in views.iter_mut() {
             let layer = &mut self.layers[draws.view.layer() as usize];
             draws.plan = layer.content.plan(draws, casters, self.can_copy);
             if draws.plan == Plan::RenewStill && !layer.make_still_part(device, map) {
@@ -137,20 +154,44 @@ impl Recorder {
             self.bytes[start..][..size_of_val(&uniform)]
                 .copy_from_slice(bytemuck::bytes_of(&uniform));
         }
+        if let Some(cube) = &self.cube {
+            if views.iter().all(|draws| draws.plan == Plan::All) {
+                if let Some(cube) = cube.prepare(device, views, casters)? {
+                    return Ok(PreparedViews {
+                        upload: None,
+                        cube: Some(cube),
+                    });
+                }
+            }
+        }
         Ok(PreparedViews {
             upload: self.uniforms.prepare(device, &self.bytes)?,
+            cube: None,
         })
     }
 
     /// Records what was planned; returns the number of passes.
     pub fn record(
         &mut self,
+        device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
         map: &DepthMap,
         prepared: PreparedViews,
         views: &mut [ViewDraws],
         casters: &[&dyn ShadowCaster],
     ) -> u32 {
+        if let (Some(cube), Some(prepared)) = (&mut self.cube, prepared.cube) {
+            let mut drawn = views.iter().peekable();
+            for (layer, index) in self.layers.iter_mut().zip(0..) {
+                match drawn.next_if(|draws| draws.view.layer() == index) {
+                    Some(draws) => layer.content.replace(draws, casters),
+                    // It is cleared with the others.
+                    None => layer.content = Content::default(),
+                }
+            }
+            cube.record(device, encoder, map.array_view(), prepared, views, casters);
+            return 1;
+        }
         self.uniforms.commit(encoder, prepared.upload);
         let mut passes = 0;
         for draws in views {
@@ -215,6 +256,9 @@ impl Recorder {
             layer.content = Content::default();
         }
         self.uniforms.invalidate();
+        if let Some(cube) = &mut self.cube {
+            cube.invalidate();
+        }
     }
 }
 
@@ -229,9 +273,6 @@ impl Layer {
         self.still_part.is_some()
     }
 }
-
-/// Nothing casts (reversed depth).
-const CLEAR: wgpu::LoadOp<f32> = wgpu::LoadOp::Clear(0.0);
 
 /// A pass over one layer.
 struct LayerPass<'a> {

@@ -7,6 +7,8 @@ mod cascade_tint;
 mod caster_errors;
 mod casters;
 mod contact;
+mod cube_pass;
+mod cube_rule;
 mod debug_view;
 mod depth_formats;
 mod depth_texture;

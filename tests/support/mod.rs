@@ -2,10 +2,12 @@
 
 pub mod ask;
 pub mod camera;
+pub mod cube_pair;
 pub mod figures;
 pub mod golden;
 pub mod gpu;
 pub mod local_truth;
+pub mod multiview;
 pub mod picture;
 pub mod probe;
 pub mod random;

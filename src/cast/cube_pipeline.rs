@@ -1,0 +1,72 @@
+//! Pipelines that draw the six faces of a cube in one pass.
+
+use std::sync::OnceLock;
+
+use crate::cast::pipeline::{
+    CasterPipelineDescriptor, CasterVertex, ModelTransform, PositionAttribute,
+};
+use crate::cast::pipeline_build::BothWindings;
+use crate::cast::{DepthFormat, capture_device_errors, pipeline_build};
+
+/// Format of the maps of point lights.
+const CUBE_FORMAT: DepthFormat = DepthFormat::Float32;
+
+/// How to make them, and what was made when they were first wanted.
+#[derive(Debug)]
+pub(crate) struct CubePipelines {
+    position: PositionAttribute,
+    model: ModelTransform,
+    cull: Option<wgpu::Face>,
+    front_face: wgpu::FrontFace,
+    topology: wgpu::PrimitiveTopology,
+    strip_index_format: Option<wgpu::IndexFormat>,
+    /// None where the device refuses.
+    made: OnceLock<Option<BothWindings>>,
+}
+
+impl CubePipelines {
+    /// None for the engine's own WGSL, whose vertex entry does not know of a view index.
+    pub fn of(descriptor: &CasterPipelineDescriptor<'_>) -> Option<Self> {
+        let CasterVertex::BuiltIn { position, model } = descriptor.vertex else {
+            return None;
+        };
+        Some(Self {
+            position,
+            model,
+            cull: descriptor.cull,
+            front_face: descriptor.front_face,
+            topology: descriptor.topology,
+            strip_index_format: descriptor.strip_index_format,
+            made: OnceLock::new(),
+        })
+    }
+
+    /// The pipeline for transforms that mirror, or for the others. Asked only on devices with `Features::MULTIVIEW`.
+    pub fn get(&self, device: &wgpu::Device, mirrored: bool) -> Option<&wgpu::RenderPipeline> {
+        let make = || {
+            capture_device_errors(device, || self.make(device))
+                .ok()
+                .flatten()
+        };
+        let pipelines = self.made.get_or_init(make).as_ref()?;
+        Some(&pipelines[usize::from(mirrored)])
+    }
+
+    fn make(&self, device: &wgpu::Device) -> Option<BothWindings> {
+        let descriptor = CasterPipelineDescriptor {
+            label: Some("shadow caster, six faces"),
+            vertex: CasterVertex::BuiltIn {
+                position: self.position,
+                model: self.model,
+            },
+            cull: self.cull,
+            front_face: self.front_face,
+            topology: self.topology,
+            strip_index_format: self.strip_index_format,
+            depth_formats: &[CUBE_FORMAT],
+        };
+        let mut by_format =
+            pipeline_build::six_views(device, &descriptor, &self.position, &self.model);
+        by_format[CUBE_FORMAT.index()].take()
+    }
+}
