@@ -7,6 +7,7 @@
 //! ```text
 //! support/growth_cpu.rs     casters and lights
 //! support/growth_device.rs  cascades, map sizes, taps, and the bare minimum
+//! support/cube.rs           a point light's faces in one pass and in a pass each
 //! support/growth.rs         tables and exponents
 //! support/stage.rs          what they share; crowd.rs: many boxes as casters
 //! support/processor.rs      time and allocations on the CPU
@@ -20,7 +21,7 @@ use clap::Parser;
 use support::clock::Clock;
 use support::gpu::Gpu;
 use support::stage::Stage;
-use support::{growth_cpu, growth_device};
+use support::{cube, growth_cpu, growth_device};
 
 #[allow(dead_code, reason = "shared with the other bench, which uses the rest")]
 mod support {
@@ -30,6 +31,7 @@ mod support {
     pub mod clock;
     pub mod configuration;
     pub mod crowd;
+    pub mod cube;
     pub mod gpu;
     pub mod growth;
     pub mod growth_cpu;
@@ -87,5 +89,6 @@ fn main() -> ExitCode {
     growth_device::map_sizes(&stage, arguments.map_size);
     growth_device::taps(&stage);
     growth_device::bare_minimum(&stage);
+    cube::faces(&stage);
     ExitCode::SUCCESS
 }

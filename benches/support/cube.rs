@@ -1,0 +1,222 @@
+//! A point light's six faces: a pass each against one pass for all, where the device draws several views at once.
+
+use std::time::Instant;
+
+use glam::{DVec3, Mat4, Vec3};
+use wgpu_shadows::{
+    Aabb, CasterPipeline, CasterPipelineDescriptor, MeshCaster, MeshCasterDescriptor, MeshIndices,
+    OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor, Revision, ShadowCaster, ShadowReport,
+    ShadowView,
+};
+
+use super::gpu::Gpu;
+use super::mesh::Mesh;
+use super::random::Random;
+use super::stage::Stage;
+use super::statistics::Spread;
+
+/// Texels a side: few, for what is filled costs both ways the same.
+const MAP_SIZE: u32 = 32;
+
+/// Prints both ways for few and many casters that lie in two and three faces, or in all of them, so that none is culled; with
+/// few triangles and with many.
+pub fn faces(stage: &Stage<'_>) {
+    println!(
+        "\npoint light: one pass for all faces beside a pass each (ratio of the times of record, submission and \
+         completion; triangles of one pass for each draw call saved)"
+    );
+    println!(
+        "{:>8}{:>8}{:>11}{:>8}{:>16}{:>14}{:>18}{:>8}{:>18}{:>12}",
+        "casters",
+        "faces",
+        "triangles",
+        "passes",
+        "draws",
+        "through faces",
+        "each saved draw",
+        "ratio",
+        "middle half",
+        "rule takes"
+    );
+    for count in [1, 12, 50, 200] {
+        for touched in [2, 3, 6] {
+            for rings in [2, 3, 5, 9] {
+                if !row(stage, count, touched, rings) {
+                    println!("this device draws a pass each");
+                    return;
+                }
+            }
+        }
+    }
+}
+
+/// False where the device does not draw six views at once.
+fn row(stage: &Stage<'_>, count: u32, touched: u32, rings: u32) -> bool {
+    let gpu = stage.gpu;
+    let mut lamp = |telling| Lamp::new(gpu, count, touched, rings, telling);
+    let [mut told, mut one, mut six] =
+        [Telling::Truth, Telling::OneTriangle, Telling::Nothing].map(&mut lamp);
+    // The first run of each warms up.
+    for lamp in [&mut told, &mut one, &mut six] {
+        lamp.seconds(gpu);
+    }
+    let ratio = Spread::of((0..stage.repeats).map(|_| one.seconds(gpu) / six.seconds(gpu)));
+    let (one, six) = (one.report(), six.report());
+    if one.passes != 1 || six.passes == 1 {
+        return false;
+    }
+    let triangles = told.things[0].triangles;
+    let through_faces = 6 * triangles * one.draws();
+    println!(
+        "{count:>8}{touched:>8}{triangles:>11}{:>8}{:>16}{through_faces:>14}{:>18.0}{:>8.3}{:>18}{:>12}",
+        format!("{} to {}", six.passes, one.passes),
+        format!("{} to {}", six.draws(), one.draws()),
+        f64::from(through_faces) / f64::from(six.draws() - one.draws()),
+        ratio.median,
+        format!("{:.3} to {:.3}", ratio.lower_quartile, ratio.upper_quartile),
+        if told.report().passes == 1 {
+            "one pass"
+        } else {
+            "each"
+        }
+    );
+    true
+}
+
+/// What casters say of their triangles, by which the library chooses.
+#[derive(Clone, Copy)]
+enum Telling {
+    Truth,
+    /// So few that one pass is cheaper.
+    OneTriangle,
+    /// So that it is a pass each.
+    Nothing,
+}
+
+/// A point light and what stands around it.
+struct Lamp {
+    shadow: OmniShadow,
+    things: Vec<Thing>,
+}
+
+struct Thing {
+    mesh: MeshCaster,
+    triangles: u32,
+    telling: Telling,
+}
+
+impl Lamp {
+    fn new(gpu: &Gpu, count: u32, touched: u32, rings: u32, telling: Telling) -> Self {
+        let descriptor = CasterPipelineDescriptor::new();
+        let pipeline = CasterPipeline::new(&gpu.device, &descriptor).expect("a valid pipeline");
+        let mut random = Random::new(17);
+        let things = (0..count).map(|_| {
+            let mut distance = || random.between(4.0, 9.0);
+            let places: Vec<Vec3> = match touched {
+                2 => vec![Vec3::new(1.0, 1.0, 0.0) * distance()],
+                3 => vec![Vec3::splat(distance())],
+                _ => [Vec3::X, Vec3::Y, Vec3::Z]
+                    .into_iter()
+                    .flat_map(|axis| [axis * distance(), axis * -distance()])
+                    .collect(),
+            };
+            let mesh = places.iter().fold(Mesh::default(), |mesh, place| {
+                mesh.joined(Mesh::sphere(*place, 0.1, rings))
+            });
+            Thing::new(gpu, &pipeline, &mesh, telling)
+        });
+        let descriptor = OmniShadowDescriptor {
+            map_size: MAP_SIZE,
+            ..Default::default()
+        };
+        Self {
+            shadow: OmniShadow::new(&gpu.device, &descriptor).expect("a valid light"),
+            things: things.collect(),
+        }
+    }
+
+    /// A frame with every face drawn, from its first command to its end.
+    fn seconds(&mut self, gpu: &Gpu) -> f64 {
+        let list: Vec<&dyn ShadowCaster> = self
+            .things
+            .iter()
+            .map(|thing| thing as &dyn ShadowCaster)
+            .collect();
+        let start = Instant::now();
+        let mut encoder = gpu.encoder();
+        self.shadow.invalidate();
+        let frame = OmniFrame {
+            origin: DVec3::ZERO,
+            light: OmniLight {
+                position_world: DVec3::ZERO,
+                range: 30.0,
+            },
+            camera: None,
+            casters: &list,
+            receivers: &[Aabb::new(Vec3::splat(-15.0), Vec3::splat(15.0))],
+        };
+        self.shadow
+            .record(&gpu.device, &mut encoder, &frame)
+            .expect("a valid frame");
+        gpu.submit(encoder);
+        start.elapsed().as_secs_f64()
+    }
+
+    fn report(&self) -> &ShadowReport {
+        self.shadow.report()
+    }
+}
+
+impl Thing {
+    fn new(gpu: &Gpu, pipeline: &CasterPipeline, mesh: &Mesh, telling: Telling) -> Self {
+        let count = mesh.indices.len() as u32;
+        let descriptor = MeshCasterDescriptor {
+            label: None,
+            pipeline,
+            vertices: &gpu.buffer(&mesh.positions, wgpu::BufferUsages::VERTEX),
+            indices: MeshIndices::Buffer {
+                buffer: gpu.buffer(&mesh.indices, wgpu::BufferUsages::INDEX),
+                format: wgpu::IndexFormat::Uint32,
+                indices: 0..count,
+                base_vertex: 0,
+            },
+            bounds_model: mesh.bounds(),
+            render_from_model: Mat4::IDENTITY,
+        };
+        Self {
+            mesh: MeshCaster::new(&gpu.device, &descriptor).expect("a valid mesh"),
+            triangles: count / 3,
+            telling,
+        }
+    }
+}
+
+impl ShadowCaster for Thing {
+    fn bounds(&self) -> Aabb {
+        self.mesh.bounds()
+    }
+
+    fn pipeline(&self) -> &CasterPipeline {
+        self.mesh.pipeline()
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &ShadowView) {
+        self.mesh.draw(pass, view);
+    }
+
+    fn same_in_every_view(&self) -> bool {
+        true
+    }
+
+    fn triangles(&self) -> u32 {
+        match self.telling {
+            Telling::Truth => self.triangles,
+            Telling::OneTriangle => 1,
+            Telling::Nothing => 0,
+        }
+    }
+
+    fn revision(&self) -> Revision {
+        self.mesh.revision()
+    }
+}
