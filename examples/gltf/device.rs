@@ -36,7 +36,7 @@ impl Gpu {
         let timestamps = adapter.features().contains(timing);
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("gltf example"),
-            required_features: adapter.features() & timing,
+            required_features: adapter.features() & (timing | wgpu::Features::MULTIVIEW),
             required_limits: adapter.limits(),
             ..Default::default()
         }))
