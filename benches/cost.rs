@@ -4,49 +4,19 @@
 //! device times are ratios, run by run, so that they mean the same on every machine. Each table ends with the exponents of its
 //! growth.
 //!
-//! ```text
-//! support/growth_cpu.rs     casters and lights
-//! support/growth_device.rs  cascades, map sizes, taps, and the bare minimum
-//! support/cube.rs           a point light's faces in one pass and in a pass each
-//! support/growth.rs         tables and exponents
-//! support/stage.rs          what they share; crowd.rs: many boxes as casters
-//! support/processor.rs      time and allocations on the CPU
-//! support/clock.rs          time on the device
-//! ```
+//! What it is made of: `growth/mod.rs`.
 
 use std::process::ExitCode;
 
 use clap::Parser;
 
-use support::clock::Clock;
+use growth::clock::Clock;
+use growth::stage::Stage;
+use growth::{cpu, device, faces};
 use support::gpu::Gpu;
-use support::stage::Stage;
-use support::{cube, growth_cpu, growth_device};
 
-#[allow(dead_code, reason = "shared with the other bench, which uses the rest")]
-mod support {
-    //! What the bench is made of.
-
-    pub mod chart;
-    pub mod clock;
-    pub mod configuration;
-    pub mod crowd;
-    pub mod cube;
-    pub mod gpu;
-    pub mod growth;
-    pub mod growth_cpu;
-    pub mod growth_device;
-    pub mod library;
-    pub mod mesh;
-    pub mod probe;
-    pub mod processor;
-    pub mod random;
-    pub mod scene;
-    pub mod stage;
-    pub mod statistics;
-    pub mod technique;
-    pub mod textbook;
-}
+mod growth;
+mod support;
 
 /// How the cost of shadows grows.
 #[derive(Parser)]
@@ -83,12 +53,12 @@ fn main() -> ExitCode {
         gpu: &gpu,
         repeats: arguments.repeats.max(1),
     };
-    growth_cpu::casters(&stage, arguments.casters);
-    growth_cpu::lights(&stage);
-    growth_device::cascades(&stage);
-    growth_device::map_sizes(&stage, arguments.map_size);
-    growth_device::taps(&stage);
-    growth_device::bare_minimum(&stage);
-    cube::faces(&stage);
+    cpu::casters(&stage, arguments.casters);
+    cpu::lights(&stage);
+    device::cascades(&stage);
+    device::map_sizes(&stage, arguments.map_size);
+    device::taps(&stage);
+    device::bare_minimum(&stage);
+    faces::in_one_pass(&stage);
     ExitCode::SUCCESS
 }

@@ -6,16 +6,7 @@
 //! Times are multiples of the textbook's, measured right before: on a software rasteriser nothing else means anything.
 //! The run fails where the library's default is not on the Pareto front of work per frame against rmse.
 //!
-//! ```text
-//! support/scenes.rs         what is measured on
-//! support/truth.rs          the ray caster, checked by closed_form.rs
-//! support/pixels.rs         what a camera sees, with the truth; edge.rs: how far it is from a shadow's edge
-//! support/technique.rs      what is compared: library.rs, textbook/
-//! support/configuration.rs  with which settings
-//! support/measure.rs        runs them; probe.rs: asks and times; error.rs: compares; floor.rs: what no filter can beat
-//! support/overall.rs        means over scenes, and the judgement; pareto.rs
-//! support/report.rs         tables; chart.rs: charts; picture.rs: the truth beside default and textbook
-//! ```
+//! What it is made of: `support/mod.rs`.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -28,45 +19,22 @@ use support::chart::{self, Point, Words};
 use support::configuration::{self, Configuration, Extent};
 use support::floor::Floors;
 use support::gpu::Gpu;
-use support::measure::{self, Sample, Settings};
+use support::measure::{Sample, Subject};
 use support::overall::{self, Overall};
 use support::pixels::Effort;
 use support::probe::Prober;
-use support::{closed_form, report, scenes};
+use support::scene::Scene;
+use support::{closed_form, parallel, report, scenes};
 
-mod support {
-    //! What the bench is made of.
+mod support;
 
-    pub mod chart;
-    pub mod closed_form;
-    pub mod configuration;
-    pub mod edge;
-    pub mod error;
-    pub mod floor;
-    pub mod gpu;
-    pub mod library;
-    pub mod measure;
-    pub mod mesh;
-    pub mod overall;
-    pub mod parallel;
-    pub mod pareto;
-    pub mod picture;
-    pub mod pixels;
-    pub mod probe;
-    pub mod random;
-    pub mod report;
-    pub mod scene;
-    pub mod scenes;
-    pub mod statistics;
-    pub mod technique;
-    pub mod textbook;
-    pub mod truth;
-}
+/// Timed runs of every configuration.
+const REPEATS: u32 = 2;
 
 /// Cost of shadows against their error, beside the textbook's.
 #[derive(Parser)]
 struct Arguments {
-    /// Fewer configurations, pixels and repetitions: minutes instead of an hour or two on a software rasteriser.
+    /// Fewer configurations, pixels and repetitions: minutes instead of most of an hour on a software rasteriser.
     #[arg(long)]
     quick: bool,
     /// Only these scenes (all others are left out of the means, too).
@@ -75,7 +43,8 @@ struct Arguments {
     /// Texels per side of a sun's map; spots and faces of point lights have half of that.
     #[arg(long, value_delimiter = ',', default_values_t = [512, 1024, 2048, 4096])]
     map_sizes: Vec<u32>,
-    /// Timed repetitions of each configuration, each next to one of the textbook's. Default 30; 2 with --quick.
+    /// Timed runs, each next to one of the textbook's, of what is on a scene's front, of the library's presets and of the textbook;
+    /// of everything else there are 2. Default 30; 2 with --quick.
     #[arg(long)]
     repeats: Option<u32>,
     /// Width of the pictures in pixels, 16:9. Default 480; 256 with --quick.
@@ -126,21 +95,12 @@ fn run(arguments: &Arguments) -> Result<Result<String, String>, Box<dyn Error>> 
         Extent::Full
     };
     let configurations = configuration::all(extent, &arguments.map_sizes);
-    let settings = Settings {
-        floors: Floors::of(configurations.iter().map(Configuration::floor_filter)),
-        configurations: &configurations,
-        effort: effort(arguments),
-        repeats: arguments
-            .repeats
-            .unwrap_or(if arguments.quick { 2 } else { 30 })
-            .max(1),
-        folder: &arguments.output,
-    };
+    let floors = Floors::of(configurations.iter().map(Configuration::floor_filter));
     std::fs::create_dir_all(&arguments.output)?;
     let mut prober = Prober::new(&gpu);
     let mut samples: Vec<Sample> = Vec::new();
     for scene in chosen_scenes(&arguments.scenes)? {
-        let own = measure::scene(&gpu, &mut prober, &scene, &settings)?;
+        let own = measure_scene(&mut prober, &scene, &configurations, &floors, arguments)?;
         report::print_scene(&own, arguments.all_rows);
         chart_of_scene(arguments, &own)?;
         samples.extend(own);
@@ -167,6 +127,47 @@ fn run(arguments: &Arguments) -> Result<Result<String, String>, Box<dyn Error>> 
     Ok(judgement)
 }
 
+/// Everything about one scene: errors and counts of all configurations, and the times of those that matter.
+fn measure_scene(
+    prober: &mut Prober<'_>,
+    scene: &Scene,
+    configurations: &[Configuration],
+    floors: &Floors,
+    arguments: &Arguments,
+) -> Result<Vec<Sample>, Box<dyn Error>> {
+    let subject = Subject::new(prober, scene, &effort(arguments))?;
+    let picture = arguments.output.join(format!("{}.png", scene.name));
+    let shown = [Configuration::shipped_default(), Configuration::BASELINE];
+    subject.write_picture(prober, &picture, &shown)?;
+    let suiting: Vec<_> = configurations
+        .iter()
+        .filter(|configuration| configuration.suits(&scene.light))
+        .collect();
+    let mut stopwatch = subject.stopwatch(prober, REPEATS)?;
+    let bar = parallel::bar(scene.name, suiting.len());
+    let mut samples = Vec::new();
+    for configuration in suiting {
+        samples.push(subject.measure(prober, configuration, floors, Some(&mut stopwatch))?);
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    stopwatch.repeats = arguments
+        .repeats
+        .unwrap_or(if arguments.quick { REPEATS } else { 30 });
+    if stopwatch.repeats > REPEATS {
+        let front = report::front(&samples);
+        let bar = parallel::bar(&format!("times of {}", scene.name), samples.len());
+        for (sample, is_on_front) in samples.iter_mut().zip(front) {
+            if is_on_front || Configuration::presets().contains(&sample.configuration) {
+                sample.ratios = subject.time(prober, &sample.configuration, &mut stopwatch)?;
+            }
+            bar.inc(1);
+        }
+        bar.finish_and_clear();
+    }
+    Ok(samples)
+}
+
 fn effort(arguments: &Arguments) -> Effort {
     let width = arguments
         .width
@@ -179,7 +180,7 @@ fn effort(arguments: &Arguments) -> Effort {
     }
 }
 
-fn chosen_scenes(names: &[String]) -> Result<Vec<support::scene::Scene>, String> {
+fn chosen_scenes(names: &[String]) -> Result<Vec<Scene>, String> {
     let mut scenes = scenes::all();
     if let Some(unknown) = names
         .iter()
@@ -261,7 +262,7 @@ fn charts_of_all(arguments: &Arguments, entries: &[Overall]) -> Result<(), Box<d
 
 fn point(configuration: &Configuration, [cost, error]: [f64; 2], is_on_front: bool) -> Point {
     let is_default = *configuration == Configuration::shipped_default();
-    let named = is_on_front || is_default || *configuration == Configuration::BASELINE;
+    let named = is_on_front || Configuration::presets().contains(configuration);
     Point {
         cost,
         error,

@@ -51,6 +51,7 @@ fn shadow_of_a_sphere_is_a_cone() {
     let near = LightInWorld::Near {
         position: light,
         range: 1e3,
+        radius: 0.0,
         axis: DVec3::Y,
         cone_cosine: -2.0,
     };

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use wgpu_shadows::{Bias, Filter};
+use wgpu_shadows::{Bias, DirectionalShadowDescriptor, Filter};
 
 use super::chart::Mark;
 use super::scene::{Light, SUN_DIAMETER_RADIANS};
@@ -15,6 +15,8 @@ pub struct Configuration {
     pub map_size: u32,
     /// Maps cover what the camera sees; else the whole scene.
     pub fits_camera: bool,
+    /// Cascades of a sun; none for as many as the scene asks for.
+    pub cascades: Option<u32>,
 }
 
 /// How shadows are made.
@@ -48,13 +50,19 @@ pub enum Extent {
 impl Configuration {
     /// What the library does unless told otherwise.
     pub fn shipped_default() -> Self {
+        Self::shipped(&DirectionalShadowDescriptor::default())
+    }
+
+    /// A descriptor of the library, for a camera, with as many cascades as the scene asks for.
+    pub fn shipped(descriptor: &DirectionalShadowDescriptor<'_>) -> Self {
         Self {
             method: Method::Library {
-                filter: Filter::default(),
-                bias: Bias::Auto,
+                filter: descriptor.filter,
+                bias: descriptor.bias,
             },
-            map_size: 2048,
+            map_size: descriptor.map_size,
             fits_camera: true,
+            cascades: None,
         }
     }
 
@@ -63,7 +71,18 @@ impl Configuration {
         method: Method::Textbook,
         map_size: 1024,
         fits_camera: false,
+        cascades: None,
     };
+
+    /// What the library recommends, cheapest first, and the textbook.
+    pub fn presets() -> [Self; 4] {
+        [
+            Self::shipped(&DirectionalShadowDescriptor::CHEAP),
+            Self::shipped_default(),
+            Self::shipped(&DirectionalShadowDescriptor::ACCURATE),
+            Self::BASELINE,
+        ]
+    }
 
     pub fn is_textbook(&self) -> bool {
         !matches!(self.method, Method::Library { .. })
@@ -164,6 +183,7 @@ pub fn all(extent: Extent, map_sizes: &[u32]) -> Vec<Configuration> {
                 method,
                 map_size,
                 fits_camera,
+                cascades: None,
             }));
         }
         for method in [Method::Textbook, Method::TextbookStar] {
@@ -171,6 +191,7 @@ pub fn all(extent: Extent, map_sizes: &[u32]) -> Vec<Configuration> {
                 method,
                 map_size,
                 fits_camera: false,
+                cascades: None,
             });
         }
     }

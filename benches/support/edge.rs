@@ -33,6 +33,9 @@ impl Rings {
 
 /// Distance to the nearest edge, to within a few percent for straight edges; infinite where no ring meets one.
 pub fn distance(world: &World, position: DVec3, normal: DVec3, rings: &Rings) -> f64 {
+    if rings.rays == 0 {
+        return f64::INFINITY;
+    }
     let here = world.is_hidden(position, normal);
     let ring_changes = |radius: f64, turn: f64| {
         (0..rings.rays).any(|step| {

@@ -1,19 +1,19 @@
 //! The library as a technique.
 
+use std::error::Error;
+
 use wgpu_shadows::{
     Bias, CascadeSplit, CasterPipeline, CasterPipelineDescriptor, CasterVertex, Coverage,
     DirectionalFrame, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter,
     MeshCaster, MeshCasterDescriptor, MeshIndices, ModelTransform, OmniFrame, OmniLight,
     OmniShadow, OmniShadowDescriptor, PositionAttribute, ShadowBindings, ShadowBindingsDescriptor,
-    ShadowCaster, ShadowReport, SpotFrame, SpotLight, SpotShadow, SpotShadowDescriptor, ViewStatus,
+    ShadowCaster, ShadowError, ShadowReport, SpotFrame, SpotLight, SpotShadow,
+    SpotShadowDescriptor, ViewStatus,
 };
 
 use super::gpu::Gpu;
 use super::scene::{Light, Scene};
 use super::technique::{Cost, Footprint, LIGHT_NAME, Lookup, Technique};
-
-/// Aspect of the pictures: width by height.
-const ASPECT: f32 = 16.0 / 9.0;
 
 /// The library's choices.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +23,8 @@ pub struct LibraryOptions {
     pub map_size: u32,
     /// Cover what the camera sees, or everything.
     pub fits_camera: bool,
+    /// Of a sun; other lights ignore it.
+    pub cascades: u32,
 }
 
 /// The meshes of a scene as casters.
@@ -97,7 +99,7 @@ impl<'a> LibraryTechnique<'a> {
         scene: &'a Scene,
         casters: &'a SceneCasters,
         options: LibraryOptions,
-    ) -> Result<Self, Box<dyn std::error::Error>> {
+    ) -> Result<Self, Box<dyn Error>> {
         let shadow = create_shadow(&gpu.device, scene, &options)?;
         let source = match &shadow {
             Shadow::Sun(sun) => sun.source(),
@@ -127,11 +129,12 @@ fn create_shadow(
     device: &wgpu::Device,
     scene: &Scene,
     options: &LibraryOptions,
-) -> Result<Shadow, wgpu_shadows::ShadowError> {
+) -> Result<Shadow, ShadowError> {
     let LibraryOptions {
         filter,
         bias,
         map_size,
+        cascades,
         ..
     } = *options;
     Ok(match scene.light {
@@ -139,7 +142,7 @@ fn create_shadow(
             let descriptor = DirectionalShadowDescriptor {
                 label: None,
                 map_size,
-                cascades: scene.cascades,
+                cascades,
                 split: CascadeSplit::Logarithmic,
                 filter,
                 bias,
@@ -169,11 +172,10 @@ fn create_shadow(
 }
 
 impl Technique for LibraryTechnique<'_> {
-    fn record(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) {
+    fn record(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) -> Result<(), ShadowError> {
         let scene = self.scene;
         let (origin, casters) = (scene.origin, &self.casters[..]);
-        let view = scene.camera.view(ASPECT);
-        let camera = self.options.fits_camera.then_some(view);
+        let camera = self.options.fits_camera.then_some(scene.camera);
         let report = match (&mut self.shadow, scene.light) {
             (Shadow::Sun(sun), Light::Sun { direction, .. }) => {
                 sun.invalidate();
@@ -193,6 +195,7 @@ impl Technique for LibraryTechnique<'_> {
                     direction,
                     outer_angle_radians,
                     range,
+                    ..
                 },
             ) => {
                 spot.invalidate();
@@ -215,6 +218,7 @@ impl Technique for LibraryTechnique<'_> {
                 Light::Point {
                     position_world,
                     range,
+                    ..
                 },
             ) => {
                 point.invalidate();
@@ -232,7 +236,8 @@ impl Technique for LibraryTechnique<'_> {
             }
             _ => unreachable!("the shadow is made for the scene's light"),
         };
-        self.report = report.expect("a valid frame").clone();
+        self.report = report?.clone();
+        Ok(())
     }
 
     fn lookup(&self) -> Lookup<'_> {

@@ -1,5 +1,6 @@
 //! One scene, every configuration.
 
+use std::error::Error;
 use std::path::Path;
 
 use super::configuration::{Configuration, Method};
@@ -7,7 +8,6 @@ use super::error::{self, Band, Errors};
 use super::floor::Floors;
 use super::gpu::Gpu;
 use super::library::{LibraryOptions, LibraryTechnique, SceneCasters};
-use super::parallel;
 use super::picture;
 use super::pixels::{self, Effort, Pixel};
 use super::probe::{Prober, Questions, Times};
@@ -26,14 +26,14 @@ pub struct Sample {
     pub is_soft: bool,
     pub configuration: Configuration,
     pub errors: Errors,
-    /// The least edge aliasing of the configuration's filter, in texels.
+    /// The least edge aliasing of the configuration's filter, in texels; not a number where it is not known.
     pub edge_floor_texels: f64,
     pub cost: Cost,
     /// Times as multiples of the textbook's, run by run.
     pub ratios: Ratios,
 }
 
-/// Time divided by that of [`Configuration::BASELINE`], run right before.
+/// Time divided by that of [`Configuration::BASELINE`], run right before; not numbers where nothing was timed.
 #[derive(Clone, Copy, Debug)]
 pub struct Ratios {
     pub maps: Spread,
@@ -41,122 +41,149 @@ pub struct Ratios {
     pub total: Spread,
 }
 
-/// What is measured, the same for all scenes.
-pub struct Settings<'a> {
-    pub configurations: &'a [Configuration],
-    pub effort: Effort,
-    pub floors: Floors,
-    /// Timed runs of each configuration, each after one of the textbook's.
-    pub repeats: u32,
-    /// For pictures.
-    pub folder: &'a Path,
+impl Ratios {
+    const UNTIMED: Self = Self {
+        maps: Spread::UNKNOWN,
+        lookups: Spread::UNKNOWN,
+        total: Spread::UNKNOWN,
+    };
 }
 
-/// Everything that the measurements of a scene share.
-struct Bench<'a> {
+/// The textbook, warmed up, and how often each is run beside it.
+pub struct Stopwatch<'a> {
+    baseline: Box<dyn Technique + 'a>,
+    pub repeats: u32,
+}
+
+/// A scene on the device, with the truth about what its camera sees: everything that its measurements share.
+pub struct Subject<'a> {
     gpu: &'a Gpu,
     scene: &'a Scene,
     casters: SceneCasters,
     meshes: WorldMeshes,
     pixels: Vec<Pixel>,
     questions: Questions,
+    picture_size: [u32; 2],
 }
 
-/// Measures all configurations that suit the scene's light.
-pub fn scene(
-    gpu: &Gpu,
-    prober: &mut Prober<'_>,
-    scene: &Scene,
-    settings: &Settings<'_>,
-) -> Result<Vec<Sample>, Box<dyn std::error::Error>> {
-    let world = World::new(scene);
-    let pixels = pixels::visible(scene, &world, &settings.effort);
-    let places: Vec<_> = pixels
-        .iter()
-        .map(|pixel| (pixel.position, pixel.normal))
-        .collect();
-    let bench = Bench {
-        gpu,
-        scene,
-        casters: SceneCasters::new(gpu, scene),
-        meshes: WorldMeshes::new(gpu, scene),
-        questions: prober.questions(&places, scene.origin),
-        pixels,
-    };
-    write_picture(&bench, prober, &settings.effort, settings.folder)?;
-    let mut baseline = bench.technique(&Configuration::BASELINE)?;
-    let suiting: Vec<_> = settings
-        .configurations
-        .iter()
-        .filter(|configuration| configuration.suits(&scene.light))
-        .collect();
-    let bar = parallel::bar(scene.name, suiting.len());
-    let mut samples = Vec::new();
-    for configuration in suiting {
-        samples.push(bench.measure(prober, configuration, baseline.as_mut(), settings)?);
-        bar.inc(1);
+impl<'a> Subject<'a> {
+    /// Casts the rays of the truth.
+    ///
+    /// # Errors
+    /// Where the camera sees nothing that faces the light.
+    pub fn new(prober: &Prober<'a>, scene: &'a Scene, effort: &Effort) -> Result<Self, String> {
+        let gpu = prober.gpu();
+        let world = World::new(scene);
+        let pixels = pixels::visible(scene, &world, effort);
+        if pixels.is_empty() {
+            return Err("the camera sees no surface that faces the light".to_owned());
+        }
+        let places: Vec<_> = pixels
+            .iter()
+            .map(|pixel| (pixel.position, pixel.normal))
+            .collect();
+        Ok(Self {
+            gpu,
+            scene,
+            casters: SceneCasters::new(gpu, scene),
+            meshes: WorldMeshes::new(gpu, scene),
+            questions: prober.questions(&places, scene.origin),
+            pixels,
+            picture_size: effort.picture,
+        })
     }
-    bar.finish_and_clear();
-    Ok(samples)
-}
 
-impl Bench<'_> {
-    fn measure(
+    /// What is asked: the pixels that face the light.
+    pub fn pixels(&self) -> &[Pixel] {
+        &self.pixels
+    }
+
+    /// Errors and counts of one configuration, and times where there is a clock for them.
+    pub fn measure(
         &self,
         prober: &mut Prober<'_>,
         configuration: &Configuration,
-        baseline: &mut dyn Technique,
-        settings: &Settings<'_>,
-    ) -> Result<Sample, Box<dyn std::error::Error>> {
+        floors: &Floors,
+        stopwatch: Option<&mut Stopwatch<'_>>,
+    ) -> Result<Sample, Box<dyn Error>> {
         let mut technique = self.technique(configuration)?;
         // The first run compiles and allocates, and its answers are as good as any.
-        prober.run(technique.as_mut(), &self.questions);
+        prober.run(technique.as_mut(), &self.questions)?;
         let answers = prober.answers(&self.questions);
-        let pairs: Vec<[Times; 2]> = (0..settings.repeats)
-            .map(|_| {
-                let before = prober.run(baseline, &self.questions);
-                [prober.run(technique.as_mut(), &self.questions), before]
-            })
-            .collect();
-        let ratio = |part: fn(&Times) -> f64| {
-            Spread::of(pairs.iter().map(|[own, before]| part(own) / part(before)))
-        };
         let footprint = technique.footprint();
         let texel_world: Vec<_> = self
             .pixels
             .iter()
             .map(|pixel| footprint.texel_world(pixel.position))
             .collect();
+        let band = Band {
+            texels: technique.band_texels(),
+            world: technique.band_world(),
+        };
         Ok(Sample {
             scene: self.scene.name,
             is_soft: self.scene.light.is_soft(),
             configuration: *configuration,
-            errors: error::compare(
-                &self.pixels,
-                &answers,
-                &texel_world,
-                Band {
-                    texels: technique.band_texels(),
-                    world: technique.band_world(),
-                },
-            ),
-            edge_floor_texels: settings
-                .floors
-                .get(configuration.floor_filter())
-                .unwrap_or(f64::NAN),
+            errors: error::compare(&self.pixels, &answers, &texel_world, band),
+            edge_floor_texels: floors.get(configuration.floor_filter()).unwrap_or(f64::NAN),
             cost: technique.cost(),
-            ratios: Ratios {
-                maps: ratio(|times| times.maps),
-                lookups: ratio(|times| times.lookups),
-                total: ratio(Times::total),
+            ratios: match stopwatch {
+                Some(stopwatch) => self.ratios(prober, technique.as_mut(), stopwatch)?,
+                None => Ratios::UNTIMED,
             },
+        })
+    }
+
+    /// Times of one configuration, each next to one of the textbook's.
+    pub fn time(
+        &self,
+        prober: &mut Prober<'_>,
+        configuration: &Configuration,
+        stopwatch: &mut Stopwatch<'_>,
+    ) -> Result<Ratios, Box<dyn Error>> {
+        let mut technique = self.technique(configuration)?;
+        prober.run(technique.as_mut(), &self.questions)?;
+        self.ratios(prober, technique.as_mut(), stopwatch)
+    }
+
+    /// A clock that repeats everything this often.
+    pub fn stopwatch(
+        &self,
+        prober: &mut Prober<'_>,
+        repeats: u32,
+    ) -> Result<Stopwatch<'_>, Box<dyn Error>> {
+        let mut baseline = self.technique(&Configuration::BASELINE)?;
+        prober.run(baseline.as_mut(), &self.questions)?;
+        Ok(Stopwatch { baseline, repeats })
+    }
+
+    /// Times of a technique that has run before.
+    fn ratios(
+        &self,
+        prober: &mut Prober<'_>,
+        technique: &mut dyn Technique,
+        stopwatch: &mut Stopwatch<'_>,
+    ) -> Result<Ratios, Box<dyn Error>> {
+        let baseline = stopwatch.baseline.as_mut();
+        let mut pairs: Vec<[Times; 2]> = Vec::new();
+        for _ in 0..stopwatch.repeats.max(1) {
+            let before = prober.run(baseline, &self.questions)?;
+            pairs.push([prober.run(technique, &self.questions)?, before]);
+        }
+        let ratio = |part: fn(&Times) -> f64| {
+            Spread::of(pairs.iter().map(|[own, before]| part(own) / part(before)))
+        };
+        Ok(Ratios {
+            maps: ratio(|times| times.maps),
+            lookups: ratio(|times| times.lookups),
+            total: ratio(Times::total),
         })
     }
 
     fn technique(
         &self,
         configuration: &Configuration,
-    ) -> Result<Box<dyn Technique + '_>, Box<dyn std::error::Error>> {
+    ) -> Result<Box<dyn Technique + '_>, Box<dyn Error>> {
         let (gpu, scene) = (self.gpu, self.scene);
         let map_size = configuration.map_size_for(&scene.light);
         let is_point = matches!(scene.light, Light::Point { .. });
@@ -171,28 +198,28 @@ impl Bench<'_> {
                     bias,
                     map_size,
                     fits_camera: configuration.fits_camera,
+                    cascades: configuration.cascades.unwrap_or(scene.cascades),
                 };
                 Box::new(LibraryTechnique::new(gpu, scene, &self.casters, options)?)
             }
         })
     }
-}
 
-/// Pictures of the scene side by side: the truth, the library's default, the textbook.
-fn write_picture(
-    bench: &Bench<'_>,
-    prober: &mut Prober<'_>,
-    effort: &Effort,
-    folder: &Path,
-) -> Result<(), Box<dyn std::error::Error>> {
-    let truth = bench.pixels.iter().map(|pixel| pixel.visibility as f32);
-    let mut visibilities = vec![truth.collect()];
-    for configuration in [Configuration::shipped_default(), Configuration::BASELINE] {
-        let mut technique = bench.technique(&configuration)?;
-        prober.run(technique.as_mut(), &bench.questions);
-        visibilities.push(prober.answers(&bench.questions));
+    /// Writes pictures of the scene side by side: the truth, then what each configuration says.
+    pub fn write_picture(
+        &self,
+        prober: &mut Prober<'_>,
+        path: &Path,
+        configurations: &[Configuration],
+    ) -> Result<(), Box<dyn Error>> {
+        let truth = self.pixels.iter().map(|pixel| pixel.visibility as f32);
+        let mut visibilities = vec![truth.collect()];
+        for configuration in configurations {
+            let mut technique = self.technique(configuration)?;
+            prober.run(technique.as_mut(), &self.questions)?;
+            visibilities.push(prober.answers(&self.questions));
+        }
+        picture::write(path, self.picture_size, &self.pixels, &visibilities)?;
+        Ok(())
     }
-    let path = folder.join(format!("{}.png", bench.scene.name));
-    picture::write(&path, effort.picture, &bench.pixels, &visibilities)?;
-    Ok(())
 }

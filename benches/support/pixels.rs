@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::camera;
 use super::edge;
 use super::parallel;
 use super::scene::Scene;
@@ -32,18 +33,20 @@ pub struct Effort {
     pub picture: [u32; 2],
     /// Points of a light with extent, per side of their square.
     pub disc_side: u32,
-    /// Rays per ring in the search for edges.
+    /// Rays per ring in the search for edges; none are looked for with 0, and errors at edges then count as acne and leaks.
     pub ring_rays: u32,
 }
 
 /// The pixels that count, row by row: those where a surface faces the light.
 pub fn visible(scene: &Scene, world: &World, effort: &Effort) -> Vec<Pixel> {
-    let eye = scene.camera.eye.as_dvec3();
-    let rays: Vec<(u32, DVec3)> = (0..).zip(scene.camera.pixel_rays(effort.picture)).collect();
+    let rays: Vec<_> = (0..)
+        .zip(camera::pixel_rays(&scene.camera, effort.picture))
+        .collect();
+    let rings = edge::Rings::of_scene(scene, effort.ring_rays);
     let label = format!("truth of {}", scene.name);
     let pixels = parallel::map(&label, &rays, |&(index, ray)| {
-        let hit = world.first_hit(eye, ray)?;
-        let position = eye + ray * hit.distance;
+        let hit = world.first_hit(ray.start, ray.direction, ray.reach)?;
+        let position = ray.start + ray.direction * hit.distance;
         let (toward_light, _) = world.light().toward_light_from(position);
         if hit.normal.dot(toward_light) <= 0.0 || !world.light().reaches(position) {
             return None;
@@ -54,12 +57,7 @@ pub fn visible(scene: &Scene, world: &World, effort: &Effort) -> Vec<Pixel> {
             normal: hit.normal,
             visibility: world.visibility(position, hit.normal, effort.disc_side),
             occluder_world: world.occluder(position, hit.normal),
-            edge_world: edge::distance(
-                world,
-                position,
-                hit.normal,
-                &edge::Rings::of_scene(scene, effort.ring_rays),
-            ),
+            edge_world: edge::distance(world, position, hit.normal, &rings),
         })
     });
     pixels.into_iter().flatten().collect()

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::time::Instant;
 
 use glam::{DVec3, Vec3};
+use wgpu_shadows::ShadowError;
 
 use super::gpu::Gpu;
 use super::technique::{Technique, asked_position};
@@ -89,6 +90,10 @@ impl<'a> Prober<'a> {
         }
     }
 
+    pub fn gpu(&self) -> &'a Gpu {
+        self.gpu
+    }
+
     /// Puts places (position and normal in a render space that begins at `origin`) on the device.
     pub fn questions(&self, places: &[(DVec3, DVec3)], origin: DVec3) -> Questions {
         let answers = self.gpu.empty_buffer(
@@ -132,21 +137,25 @@ impl<'a> Prober<'a> {
     }
 
     /// Fills the maps and looks every pixel up.
-    pub fn run(&mut self, technique: &mut dyn Technique, questions: &Questions) -> Times {
+    pub fn run(
+        &mut self,
+        technique: &mut dyn Technique,
+        questions: &Questions,
+    ) -> Result<Times, ShadowError> {
         let pipeline = self.pipeline(technique);
         let gpu = self.gpu;
         let Some(clock) = &self.clock else {
             let mut encoder = gpu.encoder();
-            technique.record(gpu, &mut encoder);
+            technique.record(gpu, &mut encoder)?;
             let maps = seconds(|| gpu.submit(encoder));
             let mut encoder = gpu.encoder();
             look_up(&mut encoder, &pipeline, technique, questions);
             let lookups = seconds(|| gpu.submit(encoder));
-            return Times { maps, lookups };
+            return Ok(Times { maps, lookups });
         };
         let mut encoder = gpu.encoder();
         encoder.write_timestamp(&clock.queries, 0);
-        technique.record(gpu, &mut encoder);
+        technique.record(gpu, &mut encoder)?;
         encoder.write_timestamp(&clock.queries, 1);
         look_up(&mut encoder, &pipeline, technique, questions);
         encoder.write_timestamp(&clock.queries, 2);
@@ -156,10 +165,10 @@ impl<'a> Prober<'a> {
         let period = f64::from(gpu.queue.get_timestamp_period()) * 1e-9;
         let between =
             |from: usize, to: usize| ticks[to].saturating_sub(ticks[from]) as f64 * period;
-        Times {
+        Ok(Times {
             maps: between(0, 1),
             lookups: between(1, 2),
-        }
+        })
     }
 
     /// The answers of the last run.

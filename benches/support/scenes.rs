@@ -2,9 +2,13 @@
 
 use glam::{DVec3, Vec3};
 
+use super::camera;
 use super::mesh::Mesh;
 use super::random::Random;
-use super::scene::{Camera, Light, SUN_DIAMETER_RADIANS, Scene};
+use super::scene::{Light, SUN_DIAMETER_RADIANS, Scene};
+
+/// Field of view of most cameras, from the lower to the upper edge of the picture.
+const FOV_Y_RADIANS: f32 = 0.9;
 
 /// All scenes, in the order of the tables.
 pub fn all() -> Vec<Scene> {
@@ -24,7 +28,7 @@ pub fn all() -> Vec<Scene> {
 }
 
 /// Boxes on level ground under an afternoon sun; far from the world's origin where `origin` says so.
-fn boxes(name: &'static str, origin: DVec3) -> Scene {
+pub fn boxes(name: &'static str, origin: DVec3) -> Scene {
     let mut random = Random::new(1);
     let mut meshes = vec![Mesh::ground(0.0, 25.0)];
     for index in 0..24 {
@@ -44,7 +48,11 @@ fn boxes(name: &'static str, origin: DVec3) -> Scene {
         name,
         meshes,
         light: Light::sun(Vec3::new(-0.7, -0.8, 0.5)),
-        camera: Camera::new(Vec3::new(5.0, 7.0, 10.0), Vec3::new(0.0, 0.0, 0.0)),
+        camera: camera::looking(
+            Vec3::new(5.0, 7.0, 10.0),
+            Vec3::new(0.0, 0.0, 0.0),
+            FOV_Y_RADIANS,
+        ),
         origin,
         cascades: 1,
     }
@@ -65,7 +73,11 @@ fn curved() -> Scene {
         name: "curved",
         meshes,
         light: Light::sun(Vec3::new(0.7, -0.5, 0.4)),
-        camera: Camera::new(Vec3::new(-4.0, 8.0, 10.0), Vec3::new(0.0, -0.5, 0.0)),
+        camera: camera::looking(
+            Vec3::new(-4.0, 8.0, 10.0),
+            Vec3::new(0.0, -0.5, 0.0),
+            FOV_Y_RADIANS,
+        ),
         origin: DVec3::ZERO,
         cascades: 1,
     }
@@ -103,7 +115,11 @@ fn thin() -> Scene {
         name: "thin",
         meshes,
         light: Light::sun(Vec3::new(0.35, -1.0, 0.5)),
-        camera: Camera::new(Vec3::new(5.0, 3.2, 9.0), Vec3::new(0.0, 0.3, 0.0)),
+        camera: camera::looking(
+            Vec3::new(5.0, 3.2, 9.0),
+            Vec3::new(0.0, 0.3, 0.0),
+            FOV_Y_RADIANS,
+        ),
         origin: DVec3::ZERO,
         cascades: 1,
     }
@@ -131,7 +147,11 @@ fn contact() -> Scene {
         name: "contact",
         meshes,
         light: Light::sun(Vec3::new(-0.8, -0.55, 0.45)),
-        camera: Camera::new(Vec3::new(0.8, 3.2, 4.2), Vec3::new(0.0, 0.0, 0.3)),
+        camera: camera::looking(
+            Vec3::new(0.8, 3.2, 4.2),
+            Vec3::new(0.0, 0.0, 0.3),
+            FOV_Y_RADIANS,
+        ),
         origin: DVec3::ZERO,
         cascades: 1,
     }
@@ -156,7 +176,11 @@ fn grazing() -> Scene {
         name: "grazing",
         meshes,
         light: Light::sun(Vec3::new(0.8, -elevation.tan(), 0.6)),
-        camera: Camera::new(Vec3::new(-3.0, 6.0, 10.0), Vec3::new(0.0, 0.0, 0.0)),
+        camera: camera::looking(
+            Vec3::new(-3.0, 6.0, 10.0),
+            Vec3::new(0.0, 0.0, 0.0),
+            FOV_Y_RADIANS,
+        ),
         origin: DVec3::ZERO,
         cascades: 1,
     }
@@ -185,7 +209,11 @@ fn town() -> Scene {
         name: "town",
         meshes,
         light: Light::sun(Vec3::new(0.6, -0.8, 0.35)),
-        camera: Camera::new(Vec3::new(6.0, 34.0, 120.0), Vec3::new(-4.0, 0.0, 40.0)),
+        camera: camera::looking(
+            Vec3::new(6.0, 34.0, 120.0),
+            Vec3::new(-4.0, 0.0, 40.0),
+            FOV_Y_RADIANS,
+        ),
         origin: DVec3::ZERO,
         cascades: 3,
     }
@@ -216,7 +244,11 @@ fn sheets() -> Scene {
         name: "sheets",
         meshes,
         light: Light::sun(Vec3::new(-0.4, -1.0, 0.5)),
-        camera: Camera::new(Vec3::new(3.0, 5.0, 7.0), Vec3::new(0.0, 0.3, 0.0)),
+        camera: camera::looking(
+            Vec3::new(3.0, 5.0, 7.0),
+            Vec3::new(0.0, 0.3, 0.0),
+            FOV_Y_RADIANS,
+        ),
         origin: DVec3::ZERO,
         cascades: 1,
     }
@@ -243,8 +275,13 @@ fn spot() -> Scene {
             direction: Vec3::new(-0.5, -1.0, -0.3),
             outer_angle_radians: 0.65,
             range: 15.0,
+            radius_world: 0.0,
         },
-        camera: Camera::new(Vec3::new(2.0, 4.0, 4.6), Vec3::new(-0.2, 0.1, 0.2)),
+        camera: camera::looking(
+            Vec3::new(2.0, 4.0, 4.6),
+            Vec3::new(-0.2, 0.1, 0.2),
+            FOV_Y_RADIANS,
+        ),
         origin: DVec3::ZERO,
         cascades: 1,
     }
@@ -270,12 +307,9 @@ fn point() -> Scene {
         light: Light::Point {
             position_world: DVec3::new(0.3, 2.1, -0.2),
             range: 12.0,
+            radius_world: 0.0,
         },
-        camera: Camera {
-            eye: Vec3::new(-4.2, 3.2, 4.4),
-            target: Vec3::new(0.8, 1.2, -0.6),
-            fov_y_radians: 1.3,
-        },
+        camera: camera::looking(Vec3::new(-4.2, 3.2, 4.4), Vec3::new(0.8, 1.2, -0.6), 1.3),
         origin: DVec3::ZERO,
         cascades: 1,
     }
@@ -301,7 +335,11 @@ fn soft() -> Scene {
             direction: Vec3::new(-0.7, -0.9, 0.4),
             angular_diameter_radians: SUN_DIAMETER_RADIANS,
         },
-        camera: Camera::new(Vec3::new(4.0, 6.5, 9.0), Vec3::new(-0.5, 0.0, 0.5)),
+        camera: camera::looking(
+            Vec3::new(4.0, 6.5, 9.0),
+            Vec3::new(-0.5, 0.0, 0.5),
+            FOV_Y_RADIANS,
+        ),
         origin: DVec3::ZERO,
         cascades: 1,
     }

@@ -9,6 +9,13 @@ pub struct Spread {
 }
 
 impl Spread {
+    /// Of no numbers.
+    pub const UNKNOWN: Self = Self {
+        lower_quartile: f64::NAN,
+        median: f64::NAN,
+        upper_quartile: f64::NAN,
+    };
+
     /// Of at least one number.
     pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
         let mut sorted: Vec<f64> = values.into_iter().collect();

@@ -1,7 +1,7 @@
 //! What is compared: anything that fills maps and answers `shadow_light(position, normal)`.
 
 use glam::{DMat4, DVec3, Vec3};
-use wgpu_shadows::ShadowView;
+use wgpu_shadows::{ShadowError, ShadowView};
 
 use super::gpu::Gpu;
 
@@ -11,7 +11,7 @@ pub const LIGHT_NAME: &str = "light";
 /// A way of making shadows for one light of one scene.
 pub trait Technique {
     /// Records the passes that fill the maps, all of them anew.
-    fn record(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder);
+    fn record(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) -> Result<(), ShadowError>;
 
     /// WGSL with `shadow_light(position: vec3<f32>, normal: vec3<f32>) -> f32` and what it reads, in group 1.
     fn lookup(&self) -> Lookup<'_>;

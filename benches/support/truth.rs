@@ -28,6 +28,8 @@ pub enum LightInWorld {
     Near {
         position: DVec3,
         range: f64,
+        /// Of the ball that shines; its disc faces every receiver.
+        radius: f64,
         /// Axis of the cone and the cosine of its half-angle; -2 for none.
         axis: DVec3,
         cone_cosine: f64,
@@ -56,18 +58,21 @@ impl World {
         )
     }
 
-    /// `diameter` is the size of the scene, from which the least distance of rays derives.
+    /// `diameter` is the size of the scene, from which the least distance of rays derives. Triangles without area, which no ray
+    /// meets and which have no normal, are left out; one of the others there must be.
     pub fn from_triangles(triangles: &[[DVec3; 3]], diameter: f64, light: LightInWorld) -> Self {
-        let vertices = triangles.iter().flatten().copied().map(to_parry).collect();
-        let indices = (0..triangles.len() as u32)
+        let with_normals: Vec<([DVec3; 3], DVec3)> = triangles
+            .iter()
+            .filter_map(|&[a, b, c]| Some(([a, b, c], (b - a).cross(c - a).try_normalize()?)))
+            .collect();
+        let corners = with_normals.iter().flat_map(|(triangle, _)| triangle);
+        let indices = (0..with_normals.len() as u32)
             .map(|triangle| [0, 1, 2].map(|corner| 3 * triangle + corner))
             .collect();
         Self {
-            mesh: TriMesh::new(vertices, indices).expect("a mesh with triangles"),
-            normals: triangles
-                .iter()
-                .map(|[a, b, c]| (b - a).cross(c - a).normalize())
-                .collect(),
+            mesh: TriMesh::new(corners.copied().map(to_parry).collect(), indices)
+                .expect("a mesh with triangles"),
+            normals: with_normals.iter().map(|(_, normal)| *normal).collect(),
             lift: 1e-9 * diameter,
             light,
         }
@@ -77,9 +82,9 @@ impl World {
         &self.light
     }
 
-    /// The nearest surface along a ray.
-    pub fn first_hit(&self, from: DVec3, direction: DVec3) -> Option<Hit> {
-        let (triangle, distance) = self.cast(from, direction, f64::INFINITY)?;
+    /// The nearest surface along a ray, up to a distance of `reach`.
+    pub fn first_hit(&self, from: DVec3, direction: DVec3, reach: f64) -> Option<Hit> {
+        let (triangle, distance) = self.cast(from, direction, reach)?;
         let normal = self.normals[triangle as usize];
         Some(Hit {
             distance,
@@ -113,18 +118,16 @@ impl World {
     /// Share of the light that a surface point sees: exact for lights without extent, else the mean over `side * side`
     /// stratified points of its disc. Where the rim and a coarse grid agree, so does everything between.
     pub fn visibility(&self, position: DVec3, normal: DVec3, side: u32) -> f64 {
-        let (toward_light, disc_tangent) = match self.light {
-            LightInWorld::Far {
-                toward_light,
-                disc_tangent,
-            } if disc_tangent > 0.0 => (toward_light, disc_tangent),
-            _ => return f64::from(u8::from(!self.is_hidden(position, normal))),
-        };
+        let (toward_light, reach) = self.light.toward_light_from(position);
+        let disc_tangent = self.light.disc_tangent_from(reach);
+        if disc_tangent == 0.0 {
+            return f64::from(u8::from(!self.is_hidden(position, normal)));
+        }
         let (across, along) = toward_light.any_orthonormal_pair();
         let sees = |[x, y]: [f64; 2]| {
             let on_disc = (across * x + along * y) * disc_tangent;
-            let direction = (toward_light + on_disc).normalize();
-            self.occluder_along(position, normal, direction, f64::INFINITY)
+            let way = toward_light + on_disc;
+            self.occluder_along(position, normal, way.normalize(), reach * way.length())
                 .is_none()
         };
         let rim = (0..24).map(|step| {
@@ -163,12 +166,6 @@ impl World {
 
 impl LightInWorld {
     pub fn new(light: &Light, origin: DVec3) -> Self {
-        let near = |position: DVec3, range: f32, axis: DVec3, cone_cosine: f64| Self::Near {
-            position: position - origin,
-            range: f64::from(range),
-            axis,
-            cone_cosine,
-        };
         match *light {
             Light::Sun {
                 direction,
@@ -182,16 +179,33 @@ impl LightInWorld {
                 direction,
                 outer_angle_radians,
                 range,
-            } => near(
-                position_world,
-                range,
-                direction.as_dvec3().normalize(),
-                f64::from(outer_angle_radians).cos(),
-            ),
+                radius_world,
+            } => Self::Near {
+                position: position_world - origin,
+                range: f64::from(range),
+                radius: f64::from(radius_world),
+                axis: direction.as_dvec3().normalize(),
+                cone_cosine: f64::from(outer_angle_radians).cos(),
+            },
             Light::Point {
                 position_world,
                 range,
-            } => near(position_world, range, DVec3::Y, -2.0),
+                radius_world,
+            } => Self::Near {
+                position: position_world - origin,
+                range: f64::from(range),
+                radius: f64::from(radius_world),
+                axis: DVec3::Y,
+                cone_cosine: -2.0,
+            },
+        }
+    }
+
+    /// Tangent of half the angle under which the light is seen from a distance of `reach`.
+    fn disc_tangent_from(&self, reach: f64) -> f64 {
+        match *self {
+            Self::Far { disc_tangent, .. } => disc_tangent,
+            Self::Near { radius, .. } => radius / reach,
         }
     }
 
@@ -217,6 +231,7 @@ impl LightInWorld {
                 range,
                 axis,
                 cone_cosine,
+                ..
             } => {
                 let way = place - position;
                 way.length() < range && way.normalize().dot(axis) > cone_cosine

@@ -1,14 +1,16 @@
 //! A cube map of distances for a point light.
 
 use glam::{DMat4, DVec3, DVec4};
+use wgpu_shadows::ShadowError;
 
+use super::super::camera;
+use super::super::gpu::Gpu;
+use super::super::scene::{Light, Scene};
+use super::super::technique::{Cost, Footprint, Lookup, Technique};
 use super::meshes::{
     ViewUniform, WorldMeshes, bind_group, depth_pipeline, map_binding_types, map_with_sampler,
     uniform_layout,
 };
-use crate::support::gpu::Gpu;
-use crate::support::scene::{Light, Scene};
-use crate::support::technique::{Cost, Footprint, Lookup, Technique};
 
 /// Nearest distance of the faces, as in the tutorial.
 const NEAR: f64 = 1.0;
@@ -47,12 +49,13 @@ impl<'a> CubeTechnique<'a> {
         let Light::Point {
             position_world,
             range,
+            ..
         } = scene.light
         else {
             unreachable!("suns and spots take a flat map");
         };
         let light = position_world.extend(f64::from(range)).as_vec4();
-        let viewer = scene.camera.eye.as_dvec3() + scene.origin;
+        let viewer = camera::eye(&scene.camera).as_dvec3() + scene.origin;
         let viewer = viewer.as_vec3().extend(1.0);
         let faces_from_light = cube_faces(f64::from(range));
         let clip_from_render = faces_from_light
@@ -115,10 +118,11 @@ impl<'a> CubeTechnique<'a> {
 }
 
 impl Technique for CubeTechnique<'_> {
-    fn record(&mut self, _: &Gpu, encoder: &mut wgpu::CommandEncoder) {
+    fn record(&mut self, _: &Gpu, encoder: &mut wgpu::CommandEncoder) -> Result<(), ShadowError> {
         for (view, target) in &self.faces {
             self.meshes.draw(encoder, &self.pipeline, view, target);
         }
+        Ok(())
     }
 
     fn lookup(&self) -> Lookup<'_> {

@@ -1,14 +1,15 @@
 //! One depth map for a sun or a spot.
 
 use glam::{DMat4, DVec3, DVec4};
+use wgpu_shadows::ShadowError;
 
+use super::super::gpu::Gpu;
+use super::super::scene::{Light, Scene};
+use super::super::technique::{Cost, Footprint, Lookup, Technique};
 use super::meshes::{
     ViewUniform, WorldMeshes, bind_group, depth_pipeline, map_binding_types, map_with_sampler,
     uniform_layout,
 };
-use crate::support::gpu::Gpu;
-use crate::support::scene::{Light, Scene};
-use crate::support::technique::{Cost, Footprint, Lookup, Technique};
 
 /// Nearest distance of a spot light's map in world units, as in the tutorial.
 const SPOT_NEAR: f64 = 1.0;
@@ -64,6 +65,7 @@ impl<'a> FlatTechnique<'a> {
                 direction,
                 outer_angle_radians,
                 range,
+                ..
             } => {
                 let position = position_world - scene.origin;
                 let angle = f64::from(outer_angle_radians);
@@ -104,8 +106,9 @@ impl<'a> FlatTechnique<'a> {
 }
 
 impl Technique for FlatTechnique<'_> {
-    fn record(&mut self, _: &Gpu, encoder: &mut wgpu::CommandEncoder) {
+    fn record(&mut self, _: &Gpu, encoder: &mut wgpu::CommandEncoder) -> Result<(), ShadowError> {
         self.drawer.draw(encoder, self.meshes);
+        Ok(())
     }
 
     fn lookup(&self) -> Lookup<'_> {
@@ -161,7 +164,8 @@ fn orthographic(scene: &Scene, direction: DVec3) -> DMat4 {
         (DVec3::INFINITY, DVec3::NEG_INFINITY),
         |(min, max), corner| (min.min(corner), max.max(corner)),
     );
-    let scale = DVec3::new(2.0, 2.0, -1.0) / (max - min);
+    // A scene that is flat to the light has no depth.
+    let scale = DVec3::new(2.0, 2.0, -1.0) / (max - min).max(DVec3::splat(1e-9));
     // Light space looks along -z, so the nearest corner has the greatest z.
     let from = DVec3::new((min.x + max.x) * 0.5, (min.y + max.y) * 0.5, max.z);
     DMat4::from_scale(scale) * DMat4::from_translation(-from) * light_from_render
@@ -180,10 +184,10 @@ fn perspective(position: DVec3, direction: DVec3, outer_angle: f64, far: f64) ->
     clip_from_light * looking_along(direction) * DMat4::from_translation(-position)
 }
 
-/// Right-handed axes that look along `direction`, as `lookAt` with +Y up.
+/// Right-handed axes that look along `direction`, as `lookAt` with +Y up; with another up where they look along it.
 fn looking_along(direction: DVec3) -> DMat4 {
     let back = -direction.normalize();
-    let right = DVec3::Y.cross(back).normalize();
+    let right = DVec3::Y.cross(back).try_normalize().unwrap_or(DVec3::X);
     let up = back.cross(right);
     DMat4::from_mat3(glam::DMat3::from_cols(right, up, back).transpose())
 }

@@ -2,9 +2,9 @@
 
 use glam::{DMat4, DVec3, Mat4, Vec3, Vec4};
 
-use crate::support::gpu::Gpu;
-use crate::support::mesh::Mesh;
-use crate::support::scene::Scene;
+use super::super::gpu::Gpu;
+use super::super::mesh::Mesh;
+use super::super::scene::Scene;
 
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 

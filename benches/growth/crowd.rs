@@ -6,9 +6,9 @@ use wgpu_shadows::{
     PositionAttribute, Revision, ShadowCaster, ShadowView,
 };
 
-use super::gpu::Gpu;
-use super::mesh::Mesh;
-use super::random::Random;
+use crate::support::gpu::Gpu;
+use crate::support::mesh::Mesh;
+use crate::support::random::Random;
 
 /// Boxes on a square of ground, one caster each.
 pub struct Crowd {

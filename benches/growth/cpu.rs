@@ -6,9 +6,9 @@ use wgpu_shadows::{
 };
 
 use super::crowd::{self, Crowd};
-use super::growth::Growth;
 use super::processor;
 use super::stage::{self, Stage};
+use super::table::Growth;
 
 /// CPU time and allocations of a frame against the number of casters, all of them in the map.
 pub fn casters(stage: &Stage<'_>, most: u32) {

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::gpu::Gpu;
+use crate::support::gpu::Gpu;
 
 /// Timestamps where the device has them, the wall's clock around submission and completion where not.
 pub struct Clock<'a> {

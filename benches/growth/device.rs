@@ -3,18 +3,19 @@
 use glam::{DMat4, DVec3, DVec4, Vec3};
 use wgpu_shadows::{Bias, CameraView, Coverage, Filter};
 
-use super::configuration::filter_name;
 use super::crowd::{self, Crowd};
-use super::gpu::Gpu;
-use super::growth::Growth;
-use super::library::{LibraryOptions, LibraryTechnique, SceneCasters};
-use super::mesh::Mesh;
-use super::probe::Prober;
-use super::scene::{Camera, Light, Scene};
 use super::stage::{SUN, Stage, frame, record_anew};
-use super::statistics::Spread;
-use super::textbook::flat::DepthDrawer;
-use super::textbook::meshes::{ViewUniform, WorldMeshes};
+use super::table::Growth;
+use crate::support::camera;
+use crate::support::configuration::filter_name;
+use crate::support::gpu::Gpu;
+use crate::support::library::{LibraryOptions, LibraryTechnique, SceneCasters};
+use crate::support::mesh::Mesh;
+use crate::support::probe::Prober;
+use crate::support::scene::{Light, Scene};
+use crate::support::statistics::Spread;
+use crate::support::textbook::flat::DepthDrawer;
+use crate::support::textbook::meshes::{ViewUniform, WorldMeshes};
 
 /// A frame against the number of cascades, for a camera that sees to the end of the ground.
 pub fn cascades(stage: &Stage<'_>) {
@@ -100,6 +101,7 @@ pub fn taps(stage: &Stage<'_>) {
             bias: Bias::Auto,
             map_size: 2048,
             fits_camera: false,
+            cascades: 1,
         };
         LibraryTechnique::new(stage.gpu, &scene, &casters, options).expect("a valid light")
     };
@@ -108,14 +110,18 @@ pub fn taps(stage: &Stage<'_>) {
         &["instructions", "lookup ratio"],
     );
     let mut hardware = technique(Filter::Hardware);
-    prober.run(&mut hardware, &questions);
+    let mut lookups = |technique: &mut LibraryTechnique<'_>| {
+        let times = prober.run(technique, &questions);
+        times.expect("a valid frame").lookups
+    };
+    lookups(&mut hardware);
     println!();
     for filter in Filter::ALL {
         let mut own = technique(filter);
-        prober.run(&mut own, &questions);
+        lookups(&mut own);
         let ratio = Spread::of((0..stage.repeats).map(|_| {
-            let before = prober.run(&mut hardware, &questions).lookups;
-            prober.run(&mut own, &questions).lookups / before
+            let before = lookups(&mut hardware);
+            lookups(&mut own) / before
         }));
         println!("{:>18} {:.2}", filter_name(filter), ratio.median);
         if filter.compares_each_texel() {
@@ -166,8 +172,7 @@ pub fn bare_minimum(stage: &Stage<'_>) {
 
 /// A camera at the edge of a square of ground, that sees to its far end.
 fn to_the_horizon(half: f32) -> CameraView {
-    let camera = Camera::new(Vec3::new(0.0, 3.0, half), Vec3::new(0.0, 0.0, -half));
-    camera.view(16.0 / 9.0)
+    camera::looking(Vec3::new(0.0, 3.0, half), Vec3::new(0.0, 0.0, -half), 0.9)
 }
 
 /// Boxes on ground, as a scene.
@@ -177,7 +182,7 @@ fn crowd_scene(gpu: &Gpu) -> Scene {
         name: "crowd",
         meshes: vec![Mesh::ground(0.0, half).joined(Crowd::new(gpu, 500).mesh)],
         light: Light::sun(SUN.direction),
-        camera: Camera::new(Vec3::splat(half), Vec3::ZERO),
+        camera: camera::looking(Vec3::splat(half), Vec3::ZERO, 0.9),
         origin: DVec3::ZERO,
         cascades: 1,
     }

@@ -7,9 +7,9 @@ use wgpu_shadows::{
 };
 
 use super::clock::Clock;
-use super::gpu::Gpu;
 use super::processor;
-use super::statistics::Spread;
+use crate::support::gpu::Gpu;
+use crate::support::statistics::Spread;
 
 /// A device, its clock, and how often everything is repeated.
 pub struct Stage<'a> {

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 
-use super::statistics::Spread;
+use crate::support::statistics::Spread;
 
 /// Counts what the program allocates.
 #[global_allocator]

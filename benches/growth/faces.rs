@@ -9,18 +9,18 @@ use wgpu_shadows::{
     ShadowView,
 };
 
-use super::gpu::Gpu;
-use super::mesh::Mesh;
-use super::random::Random;
 use super::stage::Stage;
-use super::statistics::Spread;
+use crate::support::gpu::Gpu;
+use crate::support::mesh::Mesh;
+use crate::support::random::Random;
+use crate::support::statistics::Spread;
 
 /// Texels a side: few, for what is filled costs both ways the same.
 const MAP_SIZE: u32 = 32;
 
 /// Prints both ways for few and many casters that lie in two and three faces, or in all of them, so that none is culled; with
 /// few triangles and with many.
-pub fn faces(stage: &Stage<'_>) {
+pub fn in_one_pass(stage: &Stage<'_>) {
     println!(
         "\npoint light: one pass for all faces beside a pass each (ratio of the times of record, submission and \
          completion; triangles of one pass for each draw call saved)"

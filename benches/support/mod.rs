@@ -1,0 +1,41 @@
+//! What measures shadows: scenes, the truth about them, techniques with their settings, and what they cost and how far they err.
+//!
+//! ```text
+//! scene.rs          what is measured on; scenes.rs: the generated ones; mesh.rs, camera.rs
+//! truth.rs          the ray caster, checked by closed_form.rs
+//! pixels.rs         what a camera sees, with the truth; edge.rs: how far it is from a shadow's edge
+//! technique.rs      what is compared: library.rs, textbook/
+//! configuration.rs  with which settings
+//! measure.rs        runs them; probe.rs: asks and times; error.rs: compares; floor.rs: what no filter can beat
+//! overall.rs        means over scenes, and the judgement; pareto.rs
+//! report.rs         tables; chart.rs: charts; picture.rs: truth and answers side by side
+//! gpu.rs, parallel.rs, random.rs, statistics.rs
+//! ```
+
+#![allow(dead_code, reason = "each bench, example and test uses a part of it")]
+
+pub mod camera;
+pub mod chart;
+pub mod closed_form;
+pub mod configuration;
+pub mod edge;
+pub mod error;
+pub mod floor;
+pub mod gpu;
+pub mod library;
+pub mod measure;
+pub mod mesh;
+pub mod overall;
+pub mod parallel;
+pub mod pareto;
+pub mod picture;
+pub mod pixels;
+pub mod probe;
+pub mod random;
+pub mod report;
+pub mod scene;
+pub mod scenes;
+pub mod statistics;
+pub mod technique;
+pub mod textbook;
+pub mod truth;
