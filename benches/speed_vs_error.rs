@@ -121,7 +121,7 @@ fn run(arguments: &Arguments) -> Result<Result<String, String>, Box<dyn Error>> 
     }
     let broken = samples.iter().filter(|sample| sample.errors.non_finite > 0);
     let judgement = match broken.count() {
-        0 => overall::judge_default(&entries),
+        0 => overall::judge(&entries, &Configuration::shipped_default()),
         count => Err(format!("{count} samples hold answers that are no number")),
     };
     Ok(judgement)

@@ -88,6 +88,17 @@ impl Configuration {
         !matches!(self.method, Method::Library { .. })
     }
 
+    /// Does the library derive the bias?
+    pub fn has_derived_bias(&self) -> bool {
+        matches!(
+            self.method,
+            Method::Library {
+                bias: Bias::Auto,
+                ..
+            }
+        )
+    }
+
     /// Texels per side for this kind of light.
     pub fn map_size_for(&self, light: &Light) -> u32 {
         match light {

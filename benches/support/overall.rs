@@ -77,24 +77,25 @@ fn mean(configuration: Configuration, samples: &[&Sample]) -> Overall {
     }
 }
 
-/// Is the library's default on the front of work per frame against rmse? The sentence names what beats it.
-pub fn judge_default(entries: &[Overall]) -> Result<String, String> {
-    let default = Configuration::shipped_default();
-    let own = find_default(entries)?;
+/// Is a configuration on the front of work per frame against rmse? The sentence names what beats it.
+pub fn judge(entries: &[Overall], configuration: &Configuration) -> Result<String, String> {
+    let own = find(entries, configuration)?;
     let front = "on the Pareto front of work per frame against rmse";
-    let own_figures = format!("{default}; cost {:.3e}, rmse {:.4}", own.cost, own.rmse);
+    let figures = |entry: &Overall| format!("cost {:.3e}, rmse {:.4}", entry.cost, entry.rmse);
     match beaten_by(entries, own, |entry| [entry.cost, entry.rmse]) {
-        None => Ok(format!("the default ({own_figures}) is {front}")),
+        None => Ok(format!("{configuration} ({}) is {front}", figures(own))),
         Some(other) => Err(format!(
-            "the default ({own_figures}) is not {front}: {} beats it (cost {:.3e}, rmse {:.4})",
-            other.configuration, other.cost, other.rmse
+            "{configuration} ({}) is not {front}: {} beats it ({})",
+            figures(own),
+            other.configuration,
+            figures(other)
         )),
     }
 }
 
 /// The same question with other costs, one sentence each: what they say beside the judgement.
 pub fn other_views(entries: &[Overall]) -> Result<Vec<String>, String> {
-    let own = find_default(entries)?;
+    let own = find(entries, &Configuration::shipped_default())?;
     let answer = |costs: &str, beaten: Option<&Overall>| match beaten {
         None => format!("with {costs}, nothing beats the default"),
         Some(other) => format!(
@@ -124,12 +125,11 @@ pub fn other_views(entries: &[Overall]) -> Result<Vec<String>, String> {
     ])
 }
 
-fn find_default(entries: &[Overall]) -> Result<&Overall, String> {
-    let default = Configuration::shipped_default();
+fn find<'a>(entries: &'a [Overall], configuration: &Configuration) -> Result<&'a Overall, String> {
     entries
         .iter()
-        .find(|entry| entry.configuration == default)
-        .ok_or_else(|| format!("the default ({default}) was not measured in every scene"))
+        .find(|entry| entry.configuration == *configuration)
+        .ok_or_else(|| format!("{configuration} was not measured in every scene"))
 }
 
 /// The closest to the truth of all that beat `own` in these costs.

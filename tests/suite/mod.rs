@@ -20,6 +20,7 @@ mod errors;
 mod filter_parity;
 mod fit_images;
 mod frame_errors;
+mod front;
 mod golden;
 mod hard_cases;
 mod keeping;

@@ -1,0 +1,79 @@
+//! The configurations that the library ships are worth their cost: nothing that it can do is both cheaper and closer to the truth.
+//!
+//! What `cargo bench --bench speed_vs_error` measures in full, on small pictures and counts alone: cost is
+//! [`measuring::technique::Cost::frame_work`], error the root of the mean squared error against rays cast in double precision.
+
+#[path = "../../benches/support/mod.rs"]
+mod measuring;
+
+use wgpu_shadows::{
+    Bias, DirectionalShadowDescriptor, Filter, OmniShadowDescriptor, SpotShadowDescriptor,
+};
+
+use measuring::configuration::{self, Configuration, Extent};
+use measuring::floor::Floors;
+use measuring::gpu::Gpu;
+use measuring::measure::Subject;
+use measuring::overall::{self, Overall};
+use measuring::pixels::Effort;
+use measuring::probe::Prober;
+use measuring::scenes;
+
+/// Without rings of rays around each pixel, which tell errors at edges from others but do not change their sum.
+const EFFORT: Effort = Effort {
+    picture: [160, 90],
+    disc_side: 1,
+    ring_rays: 0,
+};
+
+/// Every filter and map size with the derived bias, fitted to the camera, over all scenes with hard shadows.
+fn measured() -> Vec<Overall> {
+    let gpu = Gpu::new().expect("an adapter");
+    let mut prober = Prober::new(&gpu);
+    let mut configurations = configuration::all(Extent::Full, &[512, 1024, 2048, 4096]);
+    configurations
+        .retain(|configuration| configuration.fits_camera && configuration.has_derived_bias());
+    let mut samples = Vec::new();
+    for scene in scenes::all() {
+        if scene.light.is_soft() {
+            continue;
+        }
+        let subject = Subject::new(&prober, &scene, &EFFORT).expect("a view of lit surfaces");
+        for configuration in &configurations {
+            if configuration.suits(&scene.light) {
+                let sample = subject.measure(&mut prober, configuration, &Floors::default(), None);
+                samples.push(sample.expect("a valid configuration"));
+            }
+        }
+    }
+    overall::of(&samples)
+}
+
+#[test]
+fn presets_are_on_the_pareto_front() {
+    let entries = measured();
+    // 10 filters suit every light; each with four sizes.
+    assert!(entries.len() >= 40, "only {} measured", entries.len());
+    let presets = [
+        ("the default", DirectionalShadowDescriptor::default()),
+        ("CHEAP", DirectionalShadowDescriptor::CHEAP),
+        ("ACCURATE", DirectionalShadowDescriptor::ACCURATE),
+    ];
+    for (name, preset) in presets {
+        let judgement = overall::judge(&entries, &Configuration::shipped(&preset));
+        if let Err(blame) = judgement {
+            panic!("{name}: {blame}");
+        }
+    }
+}
+
+/// Which is how they are measured: half the texels of a sun's map a side, for spots and for the faces of point lights.
+#[test]
+fn local_lights_default_to_the_filter_and_half_the_map_of_a_sun() {
+    let sun = DirectionalShadowDescriptor::default();
+    let spot = SpotShadowDescriptor::default();
+    let lamp = OmniShadowDescriptor::default();
+    let expected: (Filter, Bias, u32) = (sun.filter, sun.bias, sun.map_size / 2);
+    assert_eq!((spot.filter, spot.bias, spot.map_size), expected);
+    assert_eq!((lamp.filter, lamp.bias, lamp.map_size), expected);
+}
