@@ -114,7 +114,7 @@ pub fn draw(path: &Path, words: &Words<'_>, points: &[Point]) -> Result<(), Box<
         }
     }
     draw_labels(&root, &points, &places)?;
-    draw_legend(&legend_area, &families)?;
+    draw_legend(&legend_area, &families, &points)?;
     root.present()?;
     Ok(())
 }
@@ -142,7 +142,7 @@ fn draw_labels(
             })
         });
         let best = boxes
-            .filter(|place| place[0] > 90 && place[2] < 955 && place[1] > 40)
+            .filter(|place| place[0] > 90 && place[2] < 955 && place[1] > 40 && place[3] < 796)
             .min_by_key(|place| {
                 let covered: i32 = taken.iter().map(|other| overlap(place, other)).sum();
                 let away = (place[1] + LABEL_HEIGHT / 2 - y).abs();
@@ -165,7 +165,11 @@ fn draw_labels(
     Ok(())
 }
 
-fn draw_legend(area: &Area<'_>, families: &[String]) -> Result<(), Box<dyn Error>> {
+fn draw_legend(
+    area: &Area<'_>,
+    families: &[String],
+    points: &[&Point],
+) -> Result<(), Box<dyn Error>> {
     let style = TextStyle::from((FONT, 14).into_font()).pos(Pos::new(HPos::Left, VPos::Center));
     let mut y = 50;
     let mut entry = |mark: Mark, color: RGBColor, words: &str| {
@@ -182,9 +186,13 @@ fn draw_legend(area: &Area<'_>, families: &[String]) -> Result<(), Box<dyn Error
         };
         entry(mark, color(family, families), family)?;
     }
-    entry(Mark::Circle, BLACK, "derived bias, map fits the camera")?;
-    entry(Mark::Square, BLACK, "derived bias, map of the whole scene")?;
-    entry(Mark::Triangle, BLACK, "another bias")?;
+    // Where all marks are circles, there is nothing to tell apart.
+    let plain = [Mark::Circle, Mark::Cross];
+    if !points.iter().all(|point| plain.contains(&point.mark)) {
+        entry(Mark::Circle, BLACK, "derived bias, map fits the camera")?;
+        entry(Mark::Square, BLACK, "derived bias, map of the whole scene")?;
+        entry(Mark::Triangle, BLACK, "another bias")?;
+    }
     let notes = [
         "Lines join map sizes.",
         "Filled, and on the grey line:",

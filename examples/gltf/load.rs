@@ -19,8 +19,8 @@ struct Placed<'a> {
     world_from_node: DMat4,
 }
 
-/// Loads `path` for a picture of `size` pixels.
-pub fn load(path: &Path, size: [u32; 2]) -> Result<Scene, String> {
+/// Loads `path` for a picture of `size` pixels, seen by the file's `camera` (counted from 0).
+pub fn load(path: &Path, size: [u32; 2], camera: usize) -> Result<Scene, String> {
     let failed = |error: gltf::Error| format!("cannot read {}: {error}", path.display());
     let gltf::Gltf { document, blob } = gltf::Gltf::open(path).map_err(failed)?;
     let folder = path.parent();
@@ -41,7 +41,7 @@ pub fn load(path: &Path, size: [u32; 2]) -> Result<Scene, String> {
     }
 
     let aspect = size[0] as f32 / size[1] as f32;
-    let (world_from_view, lens) = find_camera(&placed, &bounds, &mut notes);
+    let (world_from_view, lens) = find_camera(&placed, camera, &bounds, &mut notes)?;
     let (origin, camera) = camera_view(&world_from_view, &lens, aspect);
     let instances = world
         .into_iter()
@@ -269,12 +269,24 @@ fn world_instances(
     Ok(instances)
 }
 
-/// The first camera, or one that sees everything from above its corner.
-fn find_camera(placed: &[Placed<'_>], bounds: &DBounds, notes: &mut Vec<String>) -> (DMat4, Lens) {
-    let found = placed
+/// The camera of that number, or in a file without cameras one that sees everything from above its corner.
+fn find_camera(
+    placed: &[Placed<'_>],
+    number: usize,
+    bounds: &DBounds,
+    notes: &mut Vec<String>,
+) -> Result<(DMat4, Lens), String> {
+    let cameras: Vec<_> = placed
         .iter()
-        .find_map(|placed| Some((placed.world_from_node, placed.node.camera()?)));
-    if let Some((world_from_view, camera)) = found {
+        .filter_map(|placed| Some((placed.world_from_node, placed.node.camera()?)))
+        .collect();
+    if number > 0 && number >= cameras.len() {
+        return Err(format!(
+            "there is no camera {number}: the file has {}",
+            cameras.len()
+        ));
+    }
+    if let Some((world_from_view, camera)) = cameras.get(number) {
         let lens = match camera.projection() {
             Projection::Perspective(lens) => Lens::Perspective {
                 fov_y_radians: lens.yfov(),
@@ -287,7 +299,7 @@ fn find_camera(placed: &[Placed<'_>], bounds: &DBounds, notes: &mut Vec<String>)
                 far: lens.zfar(),
             },
         };
-        return (world_from_view, lens);
+        return Ok((*world_from_view, lens));
     }
     notes.push("the file has no camera: it is seen from above its corner".to_owned());
     let center = (bounds.min + bounds.max) * 0.5;
@@ -301,10 +313,10 @@ fn find_camera(placed: &[Placed<'_>], bounds: &DBounds, notes: &mut Vec<String>)
         near: ((distance - radius) * 0.5).max(distance * 1e-3) as f32,
         far: None,
     };
-    (
+    Ok((
         glam::dcamera::rh::view::look_at_mat4(eye, center, DVec3::Y).inverse(),
         lens,
-    )
+    ))
 }
 
 /// The lights of the file, or one sun.

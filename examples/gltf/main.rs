@@ -50,7 +50,7 @@ fn main() -> ExitCode {
 }
 
 fn run(options: &options::Options) -> Result<(), Box<dyn Error>> {
-    let scene = load::load(&options.file, options.size)?;
+    let scene = load::load(&options.file, options.size, 0)?;
     for note in &scene.notes {
         eprintln!("note: {note}");
     }

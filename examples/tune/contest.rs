@@ -1,0 +1,107 @@
+//! Every configuration, measured on one scene.
+
+use std::error::Error;
+
+use wgpu_shadows::{Bias, Filter};
+
+use crate::options::Options;
+use crate::support::configuration::{Configuration, Method};
+use crate::support::floor::Floors;
+use crate::support::measure::{Sample, Subject};
+use crate::support::parallel;
+use crate::support::probe::Prober;
+use crate::support::scene::{Light, Scene};
+
+/// Timed runs of each configuration, each next to one of the textbook's.
+const REPEATS: u32 = 3;
+
+/// The library's default, as it is named here.
+pub fn default() -> Configuration {
+    Configuration {
+        cascades: Some(1),
+        ..Configuration::shipped_default()
+    }
+}
+
+/// Measures every filter with every map size and, for suns, number of cascades; and the textbook.
+pub fn measure(
+    subject: &Subject<'_>,
+    prober: &mut Prober<'_>,
+    scene: &Scene,
+    options: &Options,
+) -> Result<Vec<Sample>, Box<dyn Error>> {
+    let configurations = configurations(&scene.light, options.quick);
+    let mut stopwatch = subject.stopwatch(prober, if options.quick { 1 } else { REPEATS })?;
+    let floors = Floors::default();
+    let bar = parallel::bar("configurations", configurations.len());
+    let mut samples = Vec::new();
+    for configuration in &configurations {
+        samples.push(subject.measure(prober, configuration, &floors, Some(&mut stopwatch))?);
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    Ok(samples)
+}
+
+fn configurations(light: &Light, quick: bool) -> Vec<Configuration> {
+    let map_sizes: &[u32] = if quick {
+        &[1024, 2048, 4096]
+    } else {
+        &[512, 1024, 2048, 4096]
+    };
+    let cascades: &[u32] = match light {
+        Light::Sun { .. } if quick => &[1, 2, 4],
+        Light::Sun { .. } => &[1, 2, 3, 4],
+        Light::Spot { .. } | Light::Point { .. } => &[1],
+    };
+    let mut all = Vec::new();
+    for filter in filters(light, quick) {
+        for &cascades in cascades {
+            all.extend(map_sizes.iter().map(|&map_size| Configuration {
+                method: Method::Library {
+                    filter,
+                    bias: Bias::Auto,
+                },
+                map_size,
+                fits_camera: true,
+                cascades: Some(cascades),
+            }));
+        }
+    }
+    all.extend(map_sizes.iter().map(|&map_size| Configuration {
+        map_size,
+        ..Configuration::BASELINE
+    }));
+    all
+}
+
+fn filters(light: &Light, quick: bool) -> Vec<Filter> {
+    let mut filters = vec![
+        Filter::Hardware,
+        Filter::Bilinear { sharpness: 1.0 },
+        Filter::default(),
+        Filter::TentMedium { sharpness: 4.0 },
+    ];
+    if !quick {
+        filters.extend([
+            Filter::Nearest,
+            Filter::Box,
+            Filter::Bilinear { sharpness: 2.0 },
+            Filter::TentNarrow { sharpness: 1.0 },
+            Filter::TentMedium { sharpness: 1.0 },
+            Filter::TentWide { sharpness: 1.0 },
+            Filter::TentWide { sharpness: 5.0 },
+        ]);
+    }
+    if light.is_soft() {
+        let light_size = match *light {
+            Light::Sun {
+                angular_diameter_radians,
+                ..
+            } => angular_diameter_radians as f32,
+            Light::Spot { radius_world, .. } | Light::Point { radius_world, .. } => radius_world,
+        };
+        filters.push(Filter::Penumbra { light_size });
+    }
+    filters
+}

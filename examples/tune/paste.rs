@@ -1,0 +1,24 @@
+//! A configuration as the Rust that asks the library for it.
+
+use crate::support::configuration::{Configuration, Method};
+use crate::support::scene::Light;
+
+/// The descriptor of a light's shadows; a textbook's configuration has none.
+pub fn descriptor(configuration: &Configuration, light: &Light) -> String {
+    let Method::Library { filter, .. } = configuration.method else {
+        return String::new();
+    };
+    let (name, cascades) = match light {
+        Light::Sun { .. } => ("DirectionalShadowDescriptor", configuration.cascades),
+        Light::Spot { .. } => ("SpotShadowDescriptor", None),
+        Light::Point { .. } => ("OmniShadowDescriptor", None),
+    };
+    let map_size = configuration.map_size_for(light);
+    let mut lines = vec![format!("    map_size: {map_size},")];
+    lines.extend(cascades.map(|cascades| format!("    cascades: {cascades},")));
+    lines.push(format!("    filter: Filter::{filter:?},"));
+    format!(
+        "{name} {{\n{}\n    ..Default::default()\n}}",
+        lines.join("\n")
+    )
+}
