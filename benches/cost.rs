@@ -1,4 +1,4 @@
-//! How the cost of shadows grows: with casters, lights, cascades, map size and taps; and beside the bare minimum.
+//! How the cost of shadows grows: with casters, lights, cascades, map size, taps and motion; and beside the bare minimum.
 //!
 //! `cargo bench --bench cost`. CPU times are those of `record` and of what an engine cannot avoid, with the allocations made;
 //! device times are ratios, run by run, so that they mean the same on every machine. Each table ends with the exponents of its
@@ -12,7 +12,7 @@ use clap::Parser;
 
 use growth::clock::Clock;
 use growth::stage::Stage;
-use growth::{cpu, device, faces};
+use growth::{cpu, device, faces, motion};
 use support::gpu::Gpu;
 
 mod growth;
@@ -58,6 +58,7 @@ fn main() -> ExitCode {
     device::cascades(&stage);
     device::map_sizes(&stage, arguments.map_size);
     device::taps(&stage);
+    motion::moving_share(&stage);
     device::bare_minimum(&stage);
     faces::in_one_pass(&stage);
     ExitCode::SUCCESS

@@ -1,11 +1,10 @@
-//! CPU time and allocations of `record` against the number of casters and lights.
+//! CPU time and allocations of `record`, and device time, against the number of casters and lights.
 
-use glam::{DVec3, Vec3};
-use wgpu_shadows::{
-    Aabb, Coverage, Filter, OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor,
-};
+use glam::Vec3;
+use wgpu_shadows::{Aabb, Coverage, Filter, OmniShadow};
 
 use super::crowd::{self, Crowd};
+use super::lamps;
 use super::processor;
 use super::stage::{self, Stage};
 use super::table::Growth;
@@ -13,7 +12,8 @@ use super::table::Growth;
 /// CPU time and allocations of a frame against the number of casters, all of them in the map.
 pub fn casters(stage: &Stage<'_>, most: u32) {
     let mut table = Growth::new(
-        "sun, one cascade: `record` on the CPU against casters (all drawn; nothing changed; almost all culled)",
+        "sun, one cascade: `record` on the CPU against casters (all drawn; nothing changed; almost all culled), and the device \
+         time of all drawn as a ratio to 100 casters",
         &[
             "casters",
             "drawn µs",
@@ -22,8 +22,13 @@ pub fn casters(stage: &Stage<'_>, most: u32) {
             "kept allocs",
             "culled µs",
             "culled allocs",
+            "device ratio",
         ],
     );
+    let few = Crowd::new(stage.gpu, 100);
+    let few_list = few.list();
+    let few_frame = stage::frame(&few_list, Coverage::Bounds(few.bounds()));
+    let mut few_shadow = stage.sun(1024, 1, Filter::default());
     let sizes = (2..).map(|decade| 10u32.pow(decade));
     for count in sizes.take_while(|&count| count <= most) {
         let crowd = Crowd::new(stage.gpu, count);
@@ -38,69 +43,70 @@ pub fn casters(stage: &Stage<'_>, most: u32) {
             &stage::frame(&list, Coverage::Bounds(corner)),
             true,
         );
-        table.add(
-            f64::from(count),
-            [drawn, kept, culled]
-                .iter()
-                .flat_map(|effort| [effort.microseconds, effort.allocations])
-                .collect::<Vec<_>>(),
+        let ratio = stage.ratio(
+            |encoder| {
+                let frame = stage::frame(&list, everything);
+                stage::record_anew(stage.gpu, &mut shadow, encoder, &frame);
+            },
+            |encoder| stage::record_anew(stage.gpu, &mut few_shadow, encoder, &few_frame),
         );
+        let mut figures: Vec<f64> = [drawn, kept, culled]
+            .iter()
+            .flat_map(|effort| [effort.microseconds, effort.allocations])
+            .collect();
+        figures.push(ratio.median);
+        table.add(f64::from(count), figures);
     }
     table.print();
 }
 
-/// CPU time of a frame against the number of point lights, over the same casters.
+/// A frame against the number of point lights, over the same casters.
 pub fn lights(stage: &Stage<'_>) {
     let crowd = Crowd::new(stage.gpu, 500);
     let list = crowd.list();
+    let half = crowd::half_side(500);
     let mut table = Growth::new(
-        "point lights of 256 texels a side over 500 casters: all `record` calls of a frame on the CPU",
-        &["lights", "drawn µs", "allocs", "draws", "passes"],
+        "point lights of 256 texels a side over 500 casters: all `record` calls of a frame on the CPU, and the device time as a \
+         ratio to one light",
+        &[
+            "lights",
+            "drawn µs",
+            "allocs",
+            "draws",
+            "passes",
+            "device ratio",
+        ],
     );
+    let record = |lamps: &mut [OmniShadow], encoder: &mut wgpu::CommandEncoder| {
+        lamps.iter_mut().for_each(OmniShadow::invalidate);
+        lamps::record(stage.gpu, encoder, lamps, &list, half)
+    };
+    let mut one = lamps::make(stage.gpu, 1);
     for count in [1u32, 2, 4, 8, 16, 32, 64] {
-        let descriptor = OmniShadowDescriptor {
-            map_size: 256,
-            ..Default::default()
-        };
-        let mut lights: Vec<OmniShadow> = (0..count)
-            .map(|_| OmniShadow::new(&stage.gpu.device, &descriptor).expect("a valid light"))
-            .collect();
-        let half = f64::from(crowd::half_side(500));
+        let mut all = lamps::make(stage.gpu, count);
+        let mut counts = [0; 2];
         let effort = processor::measure(
             stage.repeats,
             || stage.gpu.encoder(),
+            |encoder| counts = record(&mut all, encoder),
+        );
+        let ratio = stage.ratio(
             |encoder| {
-                for (index, light) in (0..).zip(&mut lights) {
-                    light.invalidate();
-                    let angle = 2.399_963 * f64::from(index);
-                    let radius = half * (f64::from(index) / f64::from(count)).sqrt();
-                    let position_world =
-                        DVec3::new(radius * angle.cos(), 4.0, radius * angle.sin());
-                    let frame = OmniFrame {
-                        origin: DVec3::ZERO,
-                        light: OmniLight {
-                            position_world,
-                            range: 10.0,
-                        },
-                        camera: None,
-                        casters: &list,
-                        receivers: &[],
-                    };
-                    light
-                        .record(&stage.gpu.device, encoder, &frame)
-                        .expect("a valid frame");
-                }
+                record(&mut all, encoder);
+            },
+            |encoder| {
+                record(&mut one, encoder);
             },
         );
-        let draws: u32 = lights.iter().map(|light| light.report().draws()).sum();
-        let passes: u32 = lights.iter().map(|light| light.report().passes).sum();
+        let [passes, draws] = counts.map(f64::from);
         table.add(
             f64::from(count),
             [
                 effort.microseconds,
                 effort.allocations,
-                f64::from(draws),
-                f64::from(passes),
+                draws,
+                passes,
+                ratio.median,
             ],
         );
     }

@@ -26,6 +26,7 @@ pub struct BoxCaster {
     index_count: u32,
     bounds: Aabb,
     id: u64,
+    moves: bool,
 }
 
 impl Crowd {
@@ -77,6 +78,7 @@ impl Crowd {
                 index_count: mesh.indices.len() as u32,
                 bounds: mesh.bounds(),
                 id,
+                moves: false,
             });
             first_vertex += mesh.positions.len() as i32;
         }
@@ -98,6 +100,17 @@ impl Crowd {
             .iter()
             .map(|caster| caster as &dyn ShadowCaster)
             .collect()
+    }
+
+    /// Makes the `count` boxes nearest to a place change every frame, and no others.
+    pub fn set_in_motion(&mut self, count: u32, place: Vec3) {
+        self.boxes.sort_by(|a, b| {
+            let away = |caster: &BoxCaster| caster.bounds.min.distance_squared(place);
+            away(a).total_cmp(&away(b))
+        });
+        for (rank, caster) in (0..).zip(&mut self.boxes) {
+            caster.moves = rank < count;
+        }
     }
 
     /// Bounds of all boxes.
@@ -127,6 +140,10 @@ impl ShadowCaster for BoxCaster {
     }
 
     fn revision(&self) -> Revision {
-        Revision::new(self.id, 0)
+        if self.moves {
+            Revision::ALWAYS_CHANGING
+        } else {
+            Revision::new(self.id, 0)
+        }
     }
 }

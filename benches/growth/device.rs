@@ -1,10 +1,10 @@
 //! Device time of maps and lookups: against cascades, map size and taps, and beside the bare minimum.
 
 use glam::{DMat4, DVec3, DVec4, Vec3};
-use wgpu_shadows::{Bias, CameraView, Coverage, Filter};
+use wgpu_shadows::{Bias, Coverage, Filter};
 
 use super::crowd::{self, Crowd};
-use super::stage::{SUN, Stage, frame, record_anew};
+use super::stage::{self, Stage, frame, record_anew};
 use super::table::Growth;
 use crate::support::camera;
 use crate::support::configuration::filter_name;
@@ -21,7 +21,7 @@ use crate::support::textbook::meshes::{ViewUniform, WorldMeshes};
 pub fn cascades(stage: &Stage<'_>) {
     let crowd = Crowd::new(stage.gpu, 2_000);
     let list = crowd.list();
-    let camera = to_the_horizon(crowd::half_side(2_000));
+    let camera = stage::to_the_horizon(crowd::half_side(2_000));
     let mut table = Growth::new(
         "sun, 1024 texels a side, 2000 casters: a frame against cascades (device time as a ratio to one cascade)",
         &["cascades", "CPU µs", "allocs", "draws", "device ratio"],
@@ -79,9 +79,9 @@ pub fn map_sizes(stage: &Stage<'_>, largest: u32) {
     table.print();
 }
 
-/// Lookups against texture instructions.
+/// Lookups against texture instructions, of a point light: the one kind that all filters suit.
 pub fn taps(stage: &Stage<'_>) {
-    let scene = crowd_scene(stage.gpu);
+    let scene = lamp_scene(stage.gpu);
     let casters = SceneCasters::new(stage.gpu, &scene);
     let mut prober = Prober::new(stage.gpu);
     let half = crowd::half_side(500);
@@ -99,14 +99,15 @@ pub fn taps(stage: &Stage<'_>) {
         let options = LibraryOptions {
             filter,
             bias: Bias::Auto,
-            map_size: 2048,
+            map_size: 1024,
             fits_camera: false,
             cascades: 1,
         };
         LibraryTechnique::new(stage.gpu, &scene, &casters, options).expect("a valid light")
     };
     let mut table = Growth::new(
-        "512x512 lookups in a map of 2048 texels a side: time as a ratio to the sampler's own 2x2 comparison",
+        "point light: 512x512 lookups in faces of 1024 texels a side, against texture instructions (time as a ratio to the \
+         sampler's own 2x2 comparison)",
         &["instructions", "lookup ratio"],
     );
     let mut hardware = technique(Filter::Hardware);
@@ -116,7 +117,13 @@ pub fn taps(stage: &Stage<'_>) {
     };
     lookups(&mut hardware);
     println!();
-    for filter in Filter::ALL {
+    let mut filters = Filter::ALL.to_vec();
+    filters.extend([
+        Filter::DirectionStar { radius: 0.04 },
+        Filter::Penumbra { light_size: 0.1 },
+        Filter::DirectionGrid { radius: 0.1 },
+    ]);
+    for filter in filters {
         let mut own = technique(filter);
         lookups(&mut own);
         let ratio = Spread::of((0..stage.repeats).map(|_| {
@@ -124,7 +131,8 @@ pub fn taps(stage: &Stage<'_>) {
             lookups(&mut own) / before
         }));
         println!("{:>18} {:.2}", filter_name(filter), ratio.median);
-        if filter.compares_each_texel() {
+        // Penumbrae end early where nothing hides the light.
+        if filter.compares_each_texel() && filter.light_size() == 0.0 {
             table.add(f64::from(filter.texture_instructions()), [ratio.median]);
         }
     }
@@ -170,18 +178,17 @@ pub fn bare_minimum(stage: &Stage<'_>) {
     }
 }
 
-/// A camera at the edge of a square of ground, that sees to its far end.
-fn to_the_horizon(half: f32) -> CameraView {
-    camera::looking(Vec3::new(0.0, 3.0, half), Vec3::new(0.0, 0.0, -half), 0.9)
-}
-
-/// Boxes on ground, as a scene.
-fn crowd_scene(gpu: &Gpu) -> Scene {
+/// Boxes on ground under a lamp, as a scene.
+fn lamp_scene(gpu: &Gpu) -> Scene {
     let half = crowd::half_side(500);
     Scene {
         name: "crowd",
         meshes: vec![Mesh::ground(0.0, half).joined(Crowd::new(gpu, 500).mesh)],
-        light: Light::sun(SUN.direction),
+        light: Light::Point {
+            position_world: DVec3::new(0.0, 8.0, 0.0),
+            range: 4.0 * half,
+            radius_world: 0.0,
+        },
         camera: camera::looking(Vec3::splat(half), Vec3::ZERO, 0.9),
         origin: DVec3::ZERO,
         cascades: 1,

@@ -1,11 +1,12 @@
 //! How cost grows, one number at a time.
 //!
 //! ```text
-//! cpu.rs        casters and lights: time and allocations on the CPU
+//! cpu.rs        casters and lights: time and allocations on the CPU, and time on the device
 //! device.rs     cascades, map sizes, taps, and the bare minimum: time on the device
 //! faces.rs      a point light's faces in one pass and in a pass each
+//! motion.rs     the share of casters that move: both
 //! table.rs      tables and exponents
-//! stage.rs      what they share; crowd.rs: many boxes as casters
+//! stage.rs      what they share; crowd.rs, lamps.rs: many boxes and lights
 //! processor.rs  time and allocations on the CPU
 //! clock.rs      time on the device
 //! ```
@@ -15,6 +16,8 @@ pub mod cpu;
 pub mod crowd;
 pub mod device;
 pub mod faces;
+pub mod lamps;
+pub mod motion;
 pub mod processor;
 pub mod stage;
 pub mod table;

@@ -2,12 +2,13 @@
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
-    Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    Filter, ShadowCaster,
+    CameraView, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, Filter, ShadowCaster,
 };
 
 use super::clock::Clock;
 use super::processor;
+use crate::support::camera;
 use crate::support::gpu::Gpu;
 use crate::support::statistics::Spread;
 
@@ -96,4 +97,9 @@ pub fn frame<'a>(casters: &'a [&'a dyn ShadowCaster], coverage: Coverage) -> Dir
         casters,
         receivers: &[],
     }
+}
+
+/// A camera at the edge of a square of ground, that sees to its far end.
+pub fn to_the_horizon(half: f32) -> CameraView {
+    camera::looking(Vec3::new(0.0, 3.0, half), Vec3::new(0.0, 0.0, -half), 0.9)
 }

@@ -43,7 +43,7 @@ impl Growth {
         println!("{:>18}{slopes}", "log-log slope");
     }
 
-    /// Least squares through the logarithms; none where a figure is not positive.
+    /// Least squares through the logarithms, without the row of size 0; none where another figure is not positive.
     fn slope(&self, column: usize) -> Option<f64> {
         let places: Vec<(f64, f64)> = self
             .rows
@@ -51,7 +51,8 @@ impl Growth {
             .filter(|(size, figures)| *size > 0.0 && figures[column] > 0.0)
             .map(|(size, figures)| (size.ln(), figures[column].ln()))
             .collect();
-        if places.len() < self.rows.len() || places.len() < 2 {
+        let sized = self.rows.iter().filter(|(size, _)| *size > 0.0);
+        if places.len() < sized.count() || places.len() < 2 {
             return None;
         }
         let count = places.len() as f64;
