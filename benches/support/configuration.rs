@@ -74,14 +74,21 @@ impl Configuration {
         cascades: None,
     };
 
-    /// What the library recommends, cheapest first, and the textbook.
-    pub fn presets() -> [Self; 4] {
+    /// What the library recommends, cheapest first, by the name it has there.
+    pub fn presets() -> [(&'static str, Self); 3] {
         [
-            Self::shipped(&DirectionalShadowDescriptor::CHEAP),
-            Self::shipped_default(),
-            Self::shipped(&DirectionalShadowDescriptor::ACCURATE),
-            Self::BASELINE,
+            ("CHEAP", DirectionalShadowDescriptor::CHEAP),
+            ("default", DirectionalShadowDescriptor::default()),
+            ("ACCURATE", DirectionalShadowDescriptor::ACCURATE),
         ]
+        .map(|(name, descriptor)| (name, Self::shipped(&descriptor)))
+    }
+
+    /// The name under which the library recommends it, if it does.
+    pub fn preset_name(&self) -> Option<&'static str> {
+        let presets = Self::presets();
+        let own = presets.iter().find(|(_, preset)| preset == self);
+        own.map(|(name, _)| *name)
     }
 
     pub fn is_textbook(&self) -> bool {

@@ -5,7 +5,6 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use super::configuration::Configuration;
 use super::measure::Sample;
 use super::overall::Overall;
 use super::pareto;
@@ -43,9 +42,8 @@ pub fn print_scene(samples: &[Sample], all_rows: bool) {
     rows.sort_by(|(a, _), (b, _)| a.errors.rmse.total_cmp(&b.errors.rmse));
     for (sample, is_on_front) in rows {
         let configuration = &sample.configuration;
-        let always = is_on_front
-            || configuration.is_textbook()
-            || *configuration == Configuration::shipped_default();
+        let always =
+            is_on_front || configuration.is_textbook() || configuration.preset_name().is_some();
         if !(always || all_rows) {
             continue;
         }
@@ -116,11 +114,10 @@ pub fn print_overall(entries: &[Overall]) {
             entry.texels * 1e-6,
             entry.cost,
             entry.time_ratio,
-            if entry.configuration == Configuration::shipped_default() {
-                "  <- default"
-            } else {
-                ""
-            },
+            entry
+                .configuration
+                .preset_name()
+                .map_or_else(String::new, |name| format!("  <- {name}")),
         );
     }
 }

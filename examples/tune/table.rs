@@ -61,7 +61,7 @@ impl<'a> Table<'a> {
     /// Prints the front, the textbook, and what is compared with them, cheapest first.
     pub fn print(&self) {
         println!(
-            "\n  {:34} {:>6} {:>7} {:>7} {:>7} {:>6} {:>6} {:>6}",
+            "\n  {:40} {:>6} {:>7} {:>7} {:>7} {:>6} {:>6} {:>6}",
             "", "rmse", "acne %", "leak %", "Mtexel", "instr", "work", "time"
         );
         let unit = self.choice.default.cost.frame_work();
@@ -73,7 +73,7 @@ impl<'a> Table<'a> {
             }
             let (errors, cost) = (&row.sample.errors, &row.sample.cost);
             println!(
-                "{} {:34} {:6.4} {:7.3} {:7.3} {:7.2} {:6} {:6.2} {:6.2}{remark}",
+                "{} {:40} {:6.4} {:7.3} {:7.3} {:7.2} {:6} {:6.2} {:6.2}{remark}",
                 if row.is_on_front { '*' } else { ' ' },
                 row.name,
                 errors.rmse,

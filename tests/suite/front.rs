@@ -54,14 +54,8 @@ fn presets_are_on_the_pareto_front() {
     let entries = measured();
     // 10 filters suit every light; each with four sizes.
     assert!(entries.len() >= 40, "only {} measured", entries.len());
-    let presets = [
-        ("the default", DirectionalShadowDescriptor::default()),
-        ("CHEAP", DirectionalShadowDescriptor::CHEAP),
-        ("ACCURATE", DirectionalShadowDescriptor::ACCURATE),
-    ];
-    for (name, preset) in presets {
-        let judgement = overall::judge(&entries, &Configuration::shipped(&preset));
-        if let Err(blame) = judgement {
+    for (name, preset) in Configuration::presets() {
+        if let Err(blame) = overall::judge(&entries, &preset) {
             panic!("{name}: {blame}");
         }
     }
