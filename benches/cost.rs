@@ -59,6 +59,7 @@ fn main() -> ExitCode {
     device::map_sizes(&stage, arguments.map_size);
     device::taps(&stage);
     motion::moving_share(&stage);
+    motion::still_part(&stage);
     device::bare_minimum(&stage);
     faces::in_one_pass(&stage);
     ExitCode::SUCCESS

@@ -3,6 +3,7 @@
 use glam::Vec3;
 use wgpu_shadows::{Aabb, Coverage, Filter, OmniShadow};
 
+use super::counts::Counts;
 use super::crowd::{self, Crowd};
 use super::lamps;
 use super::processor;
@@ -84,7 +85,7 @@ pub fn lights(stage: &Stage<'_>) {
     let mut one = lamps::make(stage.gpu, 1);
     for count in [1u32, 2, 4, 8, 16, 32, 64] {
         let mut all = lamps::make(stage.gpu, count);
-        let mut counts = [0; 2];
+        let mut counts = Counts::default();
         let effort = processor::measure(
             stage.repeats,
             || stage.gpu.encoder(),
@@ -98,14 +99,13 @@ pub fn lights(stage: &Stage<'_>) {
                 record(&mut one, encoder);
             },
         );
-        let [passes, draws] = counts.map(f64::from);
         table.add(
             f64::from(count),
             [
                 effort.microseconds,
                 effort.allocations,
-                draws,
-                passes,
+                f64::from(counts.draws),
+                f64::from(counts.passes),
                 ratio.median,
             ],
         );

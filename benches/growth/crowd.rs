@@ -139,6 +139,10 @@ impl ShadowCaster for BoxCaster {
         pass.draw_indexed(0..self.index_count, self.first_vertex, 0..1);
     }
 
+    fn triangles(&self) -> u32 {
+        self.index_count / 3
+    }
+
     fn revision(&self) -> Revision {
         if self.moves {
             Revision::ALWAYS_CHANGING

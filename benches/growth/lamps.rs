@@ -3,6 +3,7 @@
 use glam::DVec3;
 use wgpu_shadows::{OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowCaster};
 
+use super::counts::Counts;
 use crate::support::gpu::Gpu;
 
 /// The golden angle in radians: successive lamps on a spiral keep their distance.
@@ -19,16 +20,16 @@ pub fn make(gpu: &Gpu, count: u32) -> Vec<OmniShadow> {
         .collect()
 }
 
-/// Records a frame of lamps spread over a square of ground of half the side `half`, and tells its passes and draws.
+/// Records a frame of lamps spread over a square of ground of half the side `half`, and tells what it took.
 pub fn record(
     gpu: &Gpu,
     encoder: &mut wgpu::CommandEncoder,
     lamps: &mut [OmniShadow],
     casters: &[&dyn ShadowCaster],
     half: f32,
-) -> [u32; 2] {
+) -> Counts {
     let count = lamps.len() as f64;
-    let mut counts = [0; 2];
+    let mut counts = Counts::default();
     for (index, lamp) in (0..).map(f64::from).zip(lamps) {
         let (sin, cos) = (TURN * index).sin_cos();
         let radius = f64::from(half) * (index / count).sqrt();
@@ -43,9 +44,7 @@ pub fn record(
             receivers: &[],
         };
         let report = lamp.record(&gpu.device, encoder, &frame);
-        let report = report.expect("a valid frame");
-        counts[0] += report.passes;
-        counts[1] += report.draws();
+        counts.add(report.expect("a valid frame"));
     }
     counts
 }

@@ -4,14 +4,15 @@
 //! cpu.rs        casters and lights: time and allocations on the CPU, and time on the device
 //! device.rs     cascades, map sizes, taps, and the bare minimum: time on the device
 //! faces.rs      a point light's faces in one pass and in a pass each
-//! motion.rs     the share of casters that move: both
+//! motion.rs     the share of casters that move, and what a kept layer of the others saves
 //! table.rs      tables and exponents
-//! stage.rs      what they share; crowd.rs, lamps.rs: many boxes and lights
+//! stage.rs      what they share; crowd.rs, lamps.rs: many boxes and lights; counts.rs: draws and passes
 //! processor.rs  time and allocations on the CPU
 //! clock.rs      time on the device
 //! ```
 
 pub mod clock;
+pub mod counts;
 pub mod cpu;
 pub mod crowd;
 pub mod device;

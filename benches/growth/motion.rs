@@ -1,11 +1,12 @@
 //! What standing still saves: a frame against the share of casters that move.
 //!
-//! A view whose light, fit and casters did not change keeps its map, so what a frame takes depends on how many views see
-//! something move, not on how much moves.
+//! A view whose light, fit and casters did not change keeps its map. One of whose casters some move keeps the others in a layer
+//! of their own, its still part, where copying that costs less than drawing them.
 
 use glam::Vec3;
 use wgpu_shadows::{Coverage, DirectionalShadow, Filter, OmniShadow, ShadowCaster};
 
+use super::counts::Counts;
 use super::crowd::{self, Crowd};
 use super::lamps;
 use super::processor;
@@ -14,18 +15,29 @@ use super::table::Growth;
 
 const CASTERS: u32 = 2_000;
 const LAMPS: u32 = 32;
+/// Frames after which whatever does not change has been found out.
+const SETTLING: u32 = 8;
 /// Percent of the casters.
 const SHARES: [u32; 6] = [0, 1, 3, 10, 30, 100];
 
 /// Shadows of some lights over a crowd.
 trait Lit {
-    /// Records a frame, and tells the passes and draws that it took.
+    /// Records a frame, and tells what it took.
     fn record(
         &mut self,
         stage: &Stage<'_>,
         encoder: &mut wgpu::CommandEncoder,
         casters: &[&dyn ShadowCaster],
-    ) -> [u32; 2];
+    ) -> Counts;
+
+    /// Records and submits frames until what stands still is known to.
+    fn settle(&mut self, stage: &Stage<'_>, casters: &[&dyn ShadowCaster]) {
+        for _ in 0..SETTLING {
+            let mut encoder = stage.gpu.encoder();
+            self.record(stage, &mut encoder, casters);
+            stage.gpu.submit(encoder);
+        }
+    }
 }
 
 struct Sun(DirectionalShadow);
@@ -57,6 +69,7 @@ fn measure<L: Lit>(stage: &Stage<'_>, title: &str, make: impl Fn() -> L) {
             "allocs",
             "passes",
             "draws",
+            "copied",
             "device ratio",
         ],
     );
@@ -64,11 +77,8 @@ fn measure<L: Lit>(stage: &Stage<'_>, title: &str, make: impl Fn() -> L) {
         let crowd = crowd_with(stage, share);
         let casters = crowd.list();
         let mut lit = make();
-        // The first frame draws everything.
-        let mut first = stage.gpu.encoder();
-        lit.record(stage, &mut first, &casters);
-        stage.gpu.submit(first);
-        let mut counts = [0; 2];
+        lit.settle(stage, &casters);
+        let mut counts = Counts::default();
         let effort = processor::measure(
             stage.repeats,
             || stage.gpu.encoder(),
@@ -82,14 +92,14 @@ fn measure<L: Lit>(stage: &Stage<'_>, title: &str, make: impl Fn() -> L) {
                 all_lit.record(stage, encoder, &all_move);
             },
         );
-        let [passes, draws] = counts.map(f64::from);
         table.add(
             f64::from(share),
             [
                 effort.microseconds,
                 effort.allocations,
-                passes,
-                draws,
+                f64::from(counts.passes),
+                f64::from(counts.draws),
+                f64::from(counts.copied),
                 ratio.median,
             ],
         );
@@ -109,12 +119,13 @@ impl Lit for Sun {
         stage: &Stage<'_>,
         encoder: &mut wgpu::CommandEncoder,
         casters: &[&dyn ShadowCaster],
-    ) -> [u32; 2] {
+    ) -> Counts {
         let camera = stage::to_the_horizon(crowd::half_side(CASTERS));
         let frame = stage::frame(casters, Coverage::Camera(camera));
         let report = self.0.record(&stage.gpu.device, encoder, &frame);
-        let report = report.expect("a valid frame");
-        [report.passes, report.draws()]
+        let mut counts = Counts::default();
+        counts.add(report.expect("a valid frame"));
+        counts
     }
 }
 
@@ -124,8 +135,42 @@ impl Lit for Lamps {
         stage: &Stage<'_>,
         encoder: &mut wgpu::CommandEncoder,
         casters: &[&dyn ShadowCaster],
-    ) -> [u32; 2] {
+    ) -> Counts {
         let half = crowd::half_side(CASTERS);
         lamps::record(stage.gpu, encoder, &mut self.0, casters, half)
     }
+}
+
+/// A frame in which one of many casters moves, beside the same frame drawn anew: what the still part saves, and from how many
+/// casters on.
+pub fn still_part(stage: &Stage<'_>) {
+    let mut table = Growth::new(
+        "still part: one of so many casters moves; device time as a ratio to drawing all of them anew, per map size",
+        &["casters", "512", "1024", "2048", "4096"],
+    );
+    for count in [100, 300, 1_000, 3_000, 10_000] {
+        let mut crowd = Crowd::new(stage.gpu, count);
+        crowd.set_in_motion(1, Vec3::ZERO);
+        let casters = crowd.list();
+        let frame = stage::frame(&casters, Coverage::Bounds(crowd.bounds()));
+        let ratios = [512, 1024, 2048, 4096].map(|map_size| {
+            let sun = || stage.sun(map_size, 1, Filter::default());
+            let (mut settled, mut anew) = (sun(), sun());
+            let mut record = |encoder: &mut wgpu::CommandEncoder| {
+                let report = settled.record(&stage.gpu.device, encoder, &frame);
+                report.expect("a valid frame");
+            };
+            for _ in 0..SETTLING {
+                let mut encoder = stage.gpu.encoder();
+                record(&mut encoder);
+                stage.gpu.submit(encoder);
+            }
+            let ratio = stage.ratio(record, |encoder| {
+                stage::record_anew(stage.gpu, &mut anew, encoder, &frame);
+            });
+            ratio.median
+        });
+        table.add(f64::from(count), ratios);
+    }
+    table.print();
 }

@@ -3,10 +3,10 @@
 use std::error::Error;
 
 use wgpu_shadows::{
-    Bias, CascadeSplit, CasterPipeline, CasterPipelineDescriptor, CasterVertex, Coverage,
-    DirectionalFrame, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter,
-    MeshCaster, MeshCasterDescriptor, MeshIndices, ModelTransform, OmniFrame, OmniLight,
-    OmniShadow, OmniShadowDescriptor, PositionAttribute, ShadowBindings, ShadowBindingsDescriptor,
+    Bias, CasterPipeline, CasterPipelineDescriptor, CasterVertex, Coverage, DirectionalFrame,
+    DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter, MeshCaster,
+    MeshCasterDescriptor, MeshIndices, ModelTransform, OmniFrame, OmniLight, OmniShadow,
+    OmniShadowDescriptor, PositionAttribute, ShadowBindings, ShadowBindingsDescriptor,
     ShadowCaster, ShadowError, ShadowReport, SpotFrame, SpotLight, SpotShadow,
     SpotShadowDescriptor, ViewStatus,
 };
@@ -143,7 +143,6 @@ fn create_shadow(
                 label: None,
                 map_size,
                 cascades,
-                split: CascadeSplit::Logarithmic,
                 filter,
                 bias,
                 ..DirectionalShadowDescriptor::default()

@@ -61,6 +61,23 @@ fn presets_are_on_the_pareto_front() {
     }
 }
 
+/// Which is how they are measured: with the default's other fields.
+#[test]
+fn presets_differ_from_the_default_in_filter_and_map_size_alone() {
+    let default = DirectionalShadowDescriptor::default();
+    for preset in [
+        DirectionalShadowDescriptor::CHEAP,
+        DirectionalShadowDescriptor::ACCURATE,
+    ] {
+        let like_default = DirectionalShadowDescriptor {
+            filter: default.filter,
+            map_size: default.map_size,
+            ..preset
+        };
+        assert_eq!(like_default, default);
+    }
+}
+
 /// Which is how they are measured: half the texels of a sun's map a side, for spots and for the faces of point lights.
 #[test]
 fn local_lights_default_to_the_filter_and_half_the_map_of_a_sun() {

@@ -1,0 +1,20 @@
+//! What the maps of a frame took.
+
+use wgpu_shadows::ShadowReport;
+
+/// Sums over the lights of a frame.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Counts {
+    pub passes: u32,
+    pub draws: u32,
+    /// Casters that came with a still part instead.
+    pub copied: u32,
+}
+
+impl Counts {
+    pub fn add(&mut self, report: &ShadowReport) {
+        self.passes += report.passes;
+        self.draws += report.draws();
+        self.copied += report.views.iter().map(|view| view.copied).sum::<u32>();
+    }
+}
