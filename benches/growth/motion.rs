@@ -145,7 +145,8 @@ impl Lit for Lamps {
 /// casters on.
 pub fn still_part(stage: &Stage<'_>) {
     let mut table = Growth::new(
-        "still part: one of so many casters moves; device time as a ratio to drawing all of them anew, per map size",
+        "still part: one of so many casters moves; device time as a ratio to drawing all of them anew, by texels a side (1 where no \
+         part is kept)",
         &["casters", "512", "1024", "2048", "4096"],
     );
     for count in [100, 300, 1_000, 3_000, 10_000] {
