@@ -35,7 +35,7 @@ const REPEATS: u32 = 2;
 /// Cost of shadows against their error, beside the textbook's.
 #[derive(Parser)]
 struct Arguments {
-    /// Fewer configurations, pixels and repetitions: two minutes instead of fifteen on a software rasteriser.
+    /// Fewer configurations, pixels and repetitions: two minutes instead of ten to fifteen on a software rasteriser.
     #[arg(long)]
     quick: bool,
     /// Only these scenes (all others are left out of the means, too).
