@@ -13,16 +13,16 @@ use crate::receive::{Bias, Filter, ShadowViewUniform};
 pub struct DepthLayer<'a> {
     /// Texels per side.
     pub size: u32,
-    /// `size * size` depths.
+    /// `size * size` depths; those that are missing count as nothing (0).
     pub depths: &'a [f32],
 }
 
 impl DepthLayer<'_> {
     /// Depth of a texel; beyond the sides, that of the nearest one inside, as the samplers clamp.
     fn depth(&self, x: i64, y: i64) -> f64 {
-        let last = i64::from(self.size) - 1;
+        let last = (i64::from(self.size) - 1).max(0);
         let index = y.clamp(0, last) * i64::from(self.size) + x.clamp(0, last);
-        f64::from(self.depths[index as usize])
+        f64::from(self.depths.get(index as usize).copied().unwrap_or(0.0))
     }
 }
 
@@ -104,9 +104,11 @@ pub fn receiver(
     }
 }
 
-/// What `filter` returns for `receiver`, in [0, 1]; for a direction-space filter, what one of its samples returns.
+/// What `filter` returns for `receiver`, in [0, 1]; for a direction-space filter, what one of its samples returns. A receiver
+/// that is not inside, or whose texel lies off the map, is lit.
 pub fn visibility(filter: Filter, map: &DepthLayer<'_>, receiver: &Receiver) -> f64 {
-    if !receiver.inside {
+    let size = f64::from(map.size);
+    if !receiver.inside || !is_on_map(receiver.texel, size) {
         return 1.0;
     }
     if let Filter::Penumbra { .. } = filter {
@@ -163,7 +165,13 @@ fn bilinear(map: &DepthLayer<'_>, receiver: &Receiver, place: DVec2, row: &[f64]
 }
 
 fn sharpened(visibility: f64, sharpness: f64) -> f64 {
-    ((visibility - 0.5) * sharpness + 0.5).clamp(0.0, 1.0)
+    let ramp = (visibility - 0.5) * sharpness + 0.5;
+    // A sharpness that is no number, which every light refuses, sharpens nothing.
+    if ramp.is_nan() {
+        visibility
+    } else {
+        ramp.clamp(0.0, 1.0)
+    }
 }
 
 /// `wgsl/filter_penumbra.wgsl`.
@@ -193,7 +201,7 @@ fn penumbra(map: &DepthLayer<'_>, receiver: &Receiver) -> f64 {
     if count == 0.0 {
         return 1.0;
     }
-    let radius = (receiver.penumbra * (height_sum / count)).min(DVec2::splat(REACH));
+    let radius = (receiver.penumbra * (height_sum / count)).clamp(DVec2::ZERO, DVec2::splat(REACH));
     let hard = sharpened(
         bilinear(map, receiver, receiver.texel, &[1.0, 2.0, 1.0]),
         3.0,
@@ -305,7 +313,13 @@ pub fn weight(view: &ShadowViewUniform, position: DVec3) -> f64 {
     let inner = Vec4::from_array(view.inner).as_dvec4();
     let from_border =
         (texel - inner.truncate().truncate()).min(DVec2::new(inner.z, inner.w) - texel);
-    (from_border.min_element() / f64::from(view.fade_texels)).clamp(1.0 / 4096.0, 1.0)
+    let share = from_border.min_element() / f64::from(view.fade_texels);
+    // In this order a share that is no number becomes the least.
+    share.max(1.0 / 4096.0).min(1.0)
+}
+
+fn is_on_map(texel: DVec2, size: f64) -> bool {
+    texel.cmpge(DVec2::ZERO).all() && texel.cmple(DVec2::splat(size)).all()
 }
 
 fn receiver_at(
@@ -317,8 +331,7 @@ fn receiver_at(
 ) -> Receiver {
     let place = matrix(view) * moved.extend(1.0);
     let texel = place.truncate().truncate() / place.w;
-    let size = DVec2::splat(f64::from(view.map_size));
-    let on_map = texel.cmpge(DVec2::ZERO).all() && texel.cmple(size).all();
+    let on_map = is_on_map(texel, f64::from(view.map_size));
     let depth = place.z / place.w;
     Receiver {
         texel,

@@ -46,7 +46,13 @@ const TOPICS: [(&str, &[&str]); 8] = [
     ("Borders of maps", &["out_of_range", "borders"]),
     (
         "Cameras, bounds and numbers",
-        &["extreme_cameras", "degenerate", "fuzz", "fuzz_values"],
+        &[
+            "extreme_cameras",
+            "degenerate",
+            "fuzz",
+            "fuzz_reference",
+            "fuzz_values",
+        ],
     ),
     ("Devices", &["device_loss", "long_run"]),
 ];

@@ -1,0 +1,159 @@
+//! Any names, groups, stages, modules, formats and pictures of what looks maps up.
+
+use proptest::prelude::*;
+use wgpu_shadows::{
+    DebugPicture, DebugView, OmniShadow, OmniShadowDescriptor, OmniShadowPool, PoolDescriptor,
+    ShadowBindings, ShadowBindingsDescriptor, SpotShadowPool, shader,
+};
+
+use super::fuzz_values::{Counts, run};
+use super::stage::Sun;
+use crate::support::gpu::gpu;
+use crate::support::picture::{color_pass, color_target};
+use crate::support::wgsl;
+
+/// Letters, digits and underscores, a few of the library's own names, and any text.
+fn name() -> impl Strategy<Value = String> {
+    prop_oneof![
+        6 => "[a-z][a-z0-9_]{0,6}[a-z]",
+        2 => "[a-z_0-9]{0,5}",
+        1 => prop::sample::select(vec!["plane", "gather", "map_sun", "views_a", "point_sampler", "fn", "var", "array", "select", "loop"]).prop_map(str::to_owned),
+        1 => any::<String>(),
+    ]
+}
+
+/// Whatever names, group, stages and lights: a bind group whose WGSL compiles, or an error; and whatever modules: a composition
+/// that compiles, or an error.
+#[test]
+fn any_bindings_are_taken_or_refused() {
+    let gpu = gpu();
+    let counts = Counts::default();
+    let sun = Sun::of_size(4);
+    let descriptor = OmniShadowDescriptor {
+        map_size: 4,
+        ..Default::default()
+    };
+    let lamp = OmniShadow::new(&gpu.device, &descriptor).expect("a lamp");
+    let descriptor = PoolDescriptor {
+        map_size: 4,
+        capacity: 2,
+        ..Default::default()
+    };
+    let pool = SpotShadowPool::new(&gpu.device, &descriptor).expect("a pool");
+    let sources = [sun.shadow.source(), lamp.source(), pool.source()];
+    let group = prop_oneof![4 => 0..4_u32, 1 => any::<u32>()];
+    let lights = prop::collection::vec((name(), 0..3_usize), 0..4);
+    let known: Vec<_> = shader::MODULES
+        .iter()
+        .map(|module| module.name.to_owned())
+        .collect();
+    let module = prop_oneof![8 => prop::sample::select(known), 1 => name()];
+    let all = (lights, group, 0..8_u32, prop::collection::vec(module, 0..5));
+    run(200, all, |(lights, group, stages, modules)| {
+        let lights: Vec<_> = lights
+            .iter()
+            .map(|(name, kind)| (name.as_str(), sources[*kind]))
+            .collect();
+        let descriptor = ShadowBindingsDescriptor {
+            label: None,
+            group,
+            visibility: wgpu::ShaderStages::from_bits_truncate(stages),
+            lights: &lights,
+        };
+        let result = ShadowBindings::new(&gpu.device, &descriptor);
+        counts.count(&result);
+        if let Ok(bindings) = result {
+            let valid = wgsl::validate(bindings.wgsl());
+            prop_assert!(
+                valid.is_ok(),
+                "{:?}: {:?}",
+                lights.iter().map(|l| l.0).collect::<Vec<_>>(),
+                valid.err()
+            );
+        }
+        let modules: Vec<_> = modules.iter().map(String::as_str).collect();
+        let result = shader::compose(&modules);
+        counts.count(&result);
+        Ok(())
+    });
+    counts.finish(
+        "any names, groups, stages and lights of a bind group, any list of modules",
+        "WGSL that compiles or an error, no panic, no device error",
+    );
+}
+
+/// Whatever target format and picture: drawn, or refused.
+#[test]
+fn any_debug_picture_is_drawn_or_refused() {
+    use wgpu::TextureFormat as F;
+    let gpu = gpu();
+    let counts = Counts::default();
+    let sun = Sun::of_size(8);
+    let descriptor = OmniShadowDescriptor {
+        map_size: 8,
+        ..Default::default()
+    };
+    let lamp = OmniShadow::new(&gpu.device, &descriptor).expect("a lamp");
+    let descriptor = PoolDescriptor {
+        map_size: 8,
+        capacity: 2,
+        ..Default::default()
+    };
+    let pool = OmniShadowPool::new(&gpu.device, &descriptor).expect("a pool");
+    let sources = [sun.shadow.source(), lamp.source(), pool.source()];
+    let view = DebugView::new(&gpu.device, F::Rgba8Unorm).expect("a debug view");
+    let target = color_target(gpu, 4);
+    let formats = prop::sample::select(vec![
+        F::R8Unorm,
+        F::R8Snorm,
+        F::R8Uint,
+        F::R16Float,
+        F::R16Unorm,
+        F::Rg8Sint,
+        F::Rgba8Unorm,
+        F::Rgba8UnormSrgb,
+        F::Bgra8Unorm,
+        F::Rgb10a2Unorm,
+        F::Rgb10a2Uint,
+        F::Rg11b10Ufloat,
+        F::Rgb9e5Ufloat,
+        F::R32Float,
+        F::Rgba32Float,
+        F::Rgba16Float,
+        F::Rgba16Snorm,
+        F::R64Uint,
+        F::Stencil8,
+        F::Depth16Unorm,
+        F::Depth24Plus,
+        F::Depth32FloatStencil8,
+        F::NV12,
+        F::Bc1RgbaUnorm,
+        F::Bc6hRgbUfloat,
+        F::Etc2Rgb8Unorm,
+        F::Rgba32Sint,
+    ]);
+    let layer = prop_oneof![3 => 0..14_u32, 1 => any::<u32>()];
+    run(
+        200,
+        (formats, 0..3_usize, 0..3, layer),
+        |(format, light, kind, layer)| {
+            counts.count(&DebugView::new(&gpu.device, format));
+            let picture = match kind {
+                0 => DebugPicture::Layer(layer),
+                1 => DebugPicture::Cross,
+                _ => DebugPicture::PoolCross(layer),
+            };
+            let mut encoder = gpu.encoder();
+            {
+                let mut pass = color_pass(&mut encoder, &target);
+                counts.count(&view.draw(&gpu.device, &mut pass, sources[light], picture));
+            }
+            gpu.submit(encoder);
+            Ok(())
+        },
+    );
+    counts.finish(
+        "any target format and picture of a debug view",
+        "drawn or refused, no panic, no device error",
+    );
+}
