@@ -305,6 +305,9 @@ pub fn holds(view: &ShadowViewUniform, position: DVec3) -> bool {
     within && reached && place.w > 0.0 && place.z >= 0.0
 }
 
+/// So that a place that a cascade holds never weighs nothing.
+const LEAST_WEIGHT: f64 = 1.0 / 4096.0;
+
 /// Weight of a cascade at a place that it holds, as `shadow_view_weight` in `wgsl/view.wgsl`.
 pub fn weight(view: &ShadowViewUniform, position: DVec3) -> f64 {
     let relative = position - Vec3::from_array(view.anchor).as_dvec3();
@@ -314,8 +317,12 @@ pub fn weight(view: &ShadowViewUniform, position: DVec3) -> f64 {
     let from_border =
         (texel - inner.truncate().truncate()).min(DVec2::new(inner.z, inner.w) - texel);
     let share = from_border.min_element() / f64::from(view.fade_texels);
-    // In this order a share that is no number becomes the least.
-    share.max(1.0 / 4096.0).min(1.0)
+    // A share that is no number is the least.
+    if share >= LEAST_WEIGHT {
+        share.min(1.0)
+    } else {
+        LEAST_WEIGHT
+    }
 }
 
 fn is_on_map(texel: DVec2, size: f64) -> bool {
