@@ -167,11 +167,7 @@ fn bilinear(map: &DepthLayer<'_>, receiver: &Receiver, place: DVec2, row: &[f64]
 fn sharpened(visibility: f64, sharpness: f64) -> f64 {
     let ramp = (visibility - 0.5) * sharpness + 0.5;
     // A sharpness that is no number, which every light refuses, sharpens nothing.
-    if ramp.is_nan() {
-        visibility
-    } else {
-        ramp.clamp(0.0, 1.0)
-    }
+    if ramp.is_nan() { visibility } else { ramp }.clamp(0.0, 1.0)
 }
 
 /// `wgsl/filter_penumbra.wgsl`.
