@@ -11,6 +11,7 @@ mod cube_pass;
 mod cube_rule;
 mod debug_view;
 mod depth_formats;
+mod depth_rounding;
 mod depth_texture;
 mod device_loss;
 mod direction_filters;

@@ -34,6 +34,7 @@ const TOPICS: [(&str, &[&str]); 8] = [
     (
         "Size, place and motion",
         &[
+            "depth_rounding",
             "depth_steps",
             "far_away",
             "far_lamps",

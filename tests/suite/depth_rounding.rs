@@ -1,0 +1,118 @@
+//! What a map holds of a plane lies as near to the plane's own depth as the uniforms say: the errors that the bias leaves room
+//! for are those that the device makes.
+
+use glam::{DMat4, DVec2, DVec3, Mat4, Vec3};
+use wgpu_shadows::{
+    Aabb, Coverage, DepthFormat, DirectionalFrame, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor,
+};
+
+use crate::support::gpu::gpu;
+use crate::support::probe::record;
+use crate::support::random::Random;
+use crate::support::readback;
+use crate::support::scene::{Mesh, Scene};
+use crate::support::table;
+
+const MAP_SIZE: u32 = 256;
+
+/// A sheet near the origin at `tilt` degrees to the light, covered with all that lies `range` around.
+struct Sheet {
+    scene: Scene,
+    light: DVec3,
+    cover: Aabb,
+}
+
+impl Sheet {
+    fn new(tilt: f64, range: f64, random: &mut Random) -> Self {
+        let normal = random.direction();
+        let u = normal.any_orthonormal_vector();
+        let v = normal.cross(u);
+        let side = u.rotate_axis(normal, random.range(0.0, 6.2));
+        let toward_light = normal * tilt.to_radians().cos() + side * tilt.to_radians().sin();
+        // Large enough to fill much of the map, at a place that is not round.
+        let half = range * 0.5;
+        let center = random.direction() * (range * 0.11);
+        let corner = center - (u + v) * half;
+        let sheet = Mesh::sheet(
+            corner.as_vec3(),
+            (u * 2.0 * half).as_vec3(),
+            (v * 2.0 * half).as_vec3(),
+        );
+        let around = Vec3::splat(range as f32);
+        Self {
+            scene: Scene::new(gpu(), &[sheet]),
+            light: -toward_light,
+            cover: Aabb::new(-around, around),
+        }
+    }
+
+    /// The largest difference of a stored depth from the plane's, as a share of what the uniforms allow for it.
+    fn worst(&self, shadow: &mut DirectionalShadow) -> (f64, usize) {
+        let gpu = gpu();
+        let frame = DirectionalFrame {
+            origin: DVec3::ZERO,
+            light: DirectionalLight::new(self.light.as_vec3()),
+            coverage: Coverage::Bounds(self.cover),
+            casters: &self.scene.list(),
+            receivers: &[],
+        };
+        record(gpu, shadow, &frame);
+        let view = shadow.view_uniforms()[0];
+        let texel_from_anchor: DMat4 = Mat4::from_cols_array_2d(&view.texel_from_anchor).as_dmat4();
+        let anchor = Vec3::from_array(view.anchor).as_dvec3();
+        let corners = self.scene.triangles[0].0;
+        let [a, b, c] = corners.map(|at| texel_from_anchor.transform_point3(at - anchor));
+        let normal = (b - a).cross(c - a);
+        let gradient = DVec2::new(-normal.x / normal.z, -normal.y / normal.z);
+        let steep = gradient.abs().element_sum();
+        let allowed = f64::from(view.depth_error) + f64::from(view.lateral_error) * steep;
+        let depths = readback::depth_layer(gpu, shadow.texture(), 0);
+        let (mut worst, mut count) = (0.0_f64, 0);
+        for (index, stored) in (0_u32..).zip(depths).filter(|(_, stored)| *stored > 0.0) {
+            let texel = DVec2::new(f64::from(index % MAP_SIZE), f64::from(index / MAP_SIZE)) + 0.5;
+            let plane = a.z + gradient.dot(texel - a.truncate());
+            worst = worst.max((f64::from(stored) - plane).abs() / allowed);
+            count += 1;
+        }
+        (worst, count)
+    }
+}
+
+/// In ndc a depth errs by 6u of the range, one step of a 16-bit format, and the plane's slope over the rounding of texel
+/// coordinates and the snapping of vertices: no texel of any sheet by more, and some by a tenth of that at least, so that the
+/// bound is one that is needed.
+#[test]
+fn stored_depths_err_by_no_more_than_the_uniforms_say() {
+    let mut words = Vec::new();
+    for depth_format in [DepthFormat::Float32, DepthFormat::Unorm16] {
+        let descriptor = DirectionalShadowDescriptor {
+            map_size: MAP_SIZE,
+            depth_format,
+            ..Default::default()
+        };
+        let mut shadow = DirectionalShadow::new(&gpu().device, &descriptor).expect("a valid sun");
+        let mut random = Random::new(127);
+        let (mut worst, mut texels) = (0.0_f64, 0);
+        for tilt in [0.0, 0.0, 0.0, 20.0, 50.0, 75.0, 85.0, 89.0] {
+            for range in [1.0, 10.0, 1e3, 1e5] {
+                let sheet = Sheet::new(tilt, range, &mut random);
+                let (error, count) = sheet.worst(&mut shadow);
+                assert!(
+                    error <= 1.0,
+                    "{depth_format:?} tilt {tilt} range {range} on {}: {error} of what is allowed",
+                    gpu().describe()
+                );
+                worst = worst.max(error);
+                texels += count;
+            }
+        }
+        assert!(worst > 0.1 && texels > 10_000, "{worst} in {texels} texels");
+        words.push(format!("{worst:.2} of that in {depth_format:?}"));
+    }
+    table::record(
+        "stored depths of planes at 0 to 89 degrees to the light, depth ranges of 1 to 1e5",
+        "within 6u of the range, a step of 16 bits, and the slope over the rounding of a texel",
+        words.join(", "),
+    );
+}
