@@ -63,6 +63,7 @@ const INTRODUCTION: &str = "# Hard cases
 Scenes and inputs that break shadow maps, what this crate promises for each, and what its test suite measured. The suite renders
 every one of them on two software drivers, and fails where a promise is broken or where this table no longer says what was
 measured: `cargo test`, and `SHADOW_TEST_BACKEND=gl cargo test --test suite`. With `SHADOW_HARD_CASES=update` it rewrites the table.
+Random inputs have fixed seeds; `PROPTEST_CASES=10000 cargo test --test suite hard_cases::fuzz` runs ten thousand of each kind.
 
 A *settled* receiver is one whose truth, by rays in double precision, is the same for three texels around. `u` is 2^-24, the
 rounding of f32; `N` the texels per side of the map; `P` the distance from the render origin. The scenes are a few metres in size

@@ -1,6 +1,7 @@
 //! Any numbers in every constructor and every per-frame call: an answer or an error, and the device never complains.
 //!
-//! Seeds are fixed; `PROPTEST_RNG_SEED` and `PROPTEST_CASES` explore further.
+//! Seeds are fixed; `PROPTEST_RNG_SEED` and `PROPTEST_CASES` explore further: the long run is
+//! `PROPTEST_CASES=10000 cargo test --test suite hard_cases::fuzz`, some minutes.
 
 use std::cell::RefCell;
 
