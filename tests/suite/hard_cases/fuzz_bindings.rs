@@ -6,7 +6,7 @@ use wgpu_shadows::{
     ShadowBindings, ShadowBindingsDescriptor, SpotShadowPool, shader,
 };
 
-use super::fuzz_values::{Counts, run};
+use super::fuzz_values::{Counts, matrix, run};
 use super::stage::Sun;
 use crate::support::gpu::gpu;
 use crate::support::picture::{color_pass, color_target};
@@ -103,6 +103,22 @@ fn any_debug_picture_is_drawn_or_refused() {
     let sources = [sun.shadow.source(), lamp.source(), pool.source()];
     let view = DebugView::new(&gpu.device, F::Rgba8Unorm).expect("a debug view");
     let target = color_target(gpu, 4);
+    let depth = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("depth"),
+        size: target.size(),
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: F::Depth32Float,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    // One that is a picture's depth, and two that are not.
+    let depths = [
+        depth.create_view(&Default::default()),
+        color_target(gpu, 4).create_view(&Default::default()),
+        sun.shadow.texture_view().clone(),
+    ];
     let formats = prop::sample::select(vec![
         F::R8Unorm,
         F::R8Snorm,
@@ -135,8 +151,8 @@ fn any_debug_picture_is_drawn_or_refused() {
     let layer = prop_oneof![3 => 0..14_u32, 1 => any::<u32>()];
     run(
         200,
-        (formats, 0..3_usize, 0..3, layer),
-        |(format, light, kind, layer)| {
+        (formats, 0..3_usize, 0..3_usize, layer, matrix()),
+        |(format, light, kind, layer, matrix)| {
             counts.count(&DebugView::new(&gpu.device, format));
             let picture = match kind {
                 0 => DebugPicture::Layer(layer),
@@ -146,7 +162,9 @@ fn any_debug_picture_is_drawn_or_refused() {
             let mut encoder = gpu.encoder();
             {
                 let mut pass = color_pass(&mut encoder, &target);
-                counts.count(&view.draw(&gpu.device, &mut pass, sources[light], picture));
+                let (device, source) = (&gpu.device, sources[light]);
+                counts.count(&view.draw(device, &mut pass, source, picture));
+                counts.count(&view.draw_cascades(device, &mut pass, source, &depths[kind], matrix));
             }
             gpu.submit(encoder);
             Ok(())
