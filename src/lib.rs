@@ -66,6 +66,7 @@ pub use aabb::Aabb;
 pub use cast::{
     CasterPipeline, CasterPipelineDescriptor, CasterVertex, DepthFormat, MeshCaster,
     MeshCasterDescriptor, MeshIndices, ModelTransform, PositionAttribute, Revision, ShadowCaster,
+    is_closed_solid,
 };
 pub use debug_view::{DebugPicture, DebugView};
 pub use directional::{

@@ -1,13 +1,14 @@
 //! The scene's `ShadowCaster`: one per instance, over shared buffers.
 
+use glam::Vec3;
 use wgpu_shadows::{
     Aabb, CasterPipeline, CasterPipelineDescriptor, CasterVertex, ModelTransform,
-    PositionAttribute, Revision, ShadowCaster, ShadowView,
+    PositionAttribute, Revision, ShadowCaster, ShadowView, is_closed_solid,
 };
 
 use crate::device::Gpu;
 use crate::geometry::{Draw, Geometry, INSTANCE_LAYOUT, VERTEX_LAYOUT};
-use crate::scene::{Scene, Vertex};
+use crate::scene::{Mesh, Scene, Vertex};
 
 /// An instance of a mesh. The scene does not move, so its version never changes.
 pub struct SceneCaster<'a> {
@@ -44,7 +45,7 @@ impl ShadowCaster for SceneCaster<'_> {
     }
 }
 
-/// One caster per instance. Both sides of every triangle cast.
+/// One caster per instance. Both sides of every triangle cast, but for closed solids, whose back faces no light sees first.
 pub fn scene_casters<'a>(
     gpu: &Gpu,
     scene: &Scene,
@@ -57,6 +58,11 @@ pub fn scene_casters<'a>(
             model: ModelTransform::INSTANCE_MATRIX,
         },
         ..Default::default()
+    };
+    let closed = CasterPipelineDescriptor {
+        label: Some("closed caster"),
+        cull: Some(wgpu::Face::Back),
+        ..solid
     };
     let masked = CasterPipelineDescriptor {
         label: Some("masked caster"),
@@ -72,23 +78,34 @@ pub fn scene_casters<'a>(
     let make = |descriptor| {
         CasterPipeline::new(&gpu.device, descriptor).map_err(|error| error.to_string())
     };
-    let (solid, masked) = (make(&solid)?, make(&masked)?);
+    let (solid, closed, masked) = (make(&solid)?, make(&closed)?, make(&masked)?);
+    let closed_mirrored = closed.mirrored();
+    let is_closed: Vec<bool> = scene.meshes.iter().map(is_closed_mesh).collect();
     Ok(geometry
         .draws
         .iter()
         .map(|draw| {
             let has_holes = geometry.materials[draw.material].alpha_cutoff > 0.0;
+            let instance = &scene.instances[draw.instance];
             SceneCaster {
                 geometry,
                 draw,
-                bounds_render: scene.instances[draw.instance].bounds_render,
-                pipeline: if has_holes {
-                    masked.clone()
-                } else {
-                    solid.clone()
-                },
+                bounds_render: instance.bounds_render,
+                pipeline: match (has_holes, is_closed[instance.mesh], draw.mirrored) {
+                    (true, ..) => &masked,
+                    (false, false, _) => &solid,
+                    (false, true, false) => &closed,
+                    (false, true, true) => &closed_mirrored,
+                }
+                .clone(),
                 masked: has_holes,
             }
         })
         .collect())
+}
+
+fn is_closed_mesh(mesh: &Mesh) -> bool {
+    let positions = mesh.vertices.iter();
+    let positions: Vec<Vec3> = positions.map(|vertex| vertex.position.into()).collect();
+    is_closed_solid(&positions, &mesh.indices)
 }

@@ -7,6 +7,7 @@
 //! mesh.rs         MeshCaster: a ready-made caster
 //! depth_format.rs DepthFormat: 32 or 16 bits a texel
 //! depth_map.rs    the layered depth texture
+//! closed.rs       which meshes are closed solids
 //! content.rs      what a layer holds, and what a frame must draw
 //! recorder.rs     the passes
 //! cube_pass.rs    six faces in one pass; cube_pipeline.rs: the pipelines for it
@@ -17,6 +18,7 @@
 //! ```
 
 mod caster;
+mod closed;
 mod content;
 mod cube_pass;
 mod cube_pipeline;
@@ -32,6 +34,7 @@ mod recorder;
 mod upload;
 
 pub use caster::{Revision, ShadowCaster};
+pub use closed::is_closed_solid;
 pub(crate) use content::{Plan, ViewDraws};
 pub use depth_format::DepthFormat;
 pub(crate) use depth_map::DepthMap;

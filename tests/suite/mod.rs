@@ -6,6 +6,7 @@ mod blending;
 mod cascade_tint;
 mod caster_errors;
 mod casters;
+mod closed_solids;
 mod contact;
 mod cube_pass;
 mod cube_rule;
