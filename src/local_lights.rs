@@ -32,6 +32,7 @@ struct SlotState {
 }
 
 /// A light of a frame.
+#[derive(Debug)]
 pub(crate) struct LocalPlacement {
     pub slot: u32,
     pub position_world: DVec3,

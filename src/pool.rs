@@ -89,6 +89,8 @@ pub struct PoolFrame<'a, L> {
 #[derive(Debug)]
 struct Slots {
     tickets: Vec<Option<u64>>,
+    /// Which were named in the frame being checked.
+    seen: Vec<bool>,
 }
 
 static NEXT_TICKET: AtomicU64 = AtomicU64::new(0);
@@ -117,12 +119,13 @@ impl Slots {
         }
     }
 
-    fn check_frame<L>(&self, lights: &[PoolLight<L>]) -> Result<(), ShadowError> {
-        let mut seen = vec![false; self.tickets.len()];
+    fn check_frame<L>(&mut self, lights: &[PoolLight<L>]) -> Result<(), ShadowError> {
+        self.seen.clear();
+        self.seen.resize(self.tickets.len(), false);
         for light in lights {
             self.check("PoolFrame::lights.slot", light.slot)?;
             let index = light.slot.index;
-            if std::mem::replace(&mut seen[index as usize], true) {
+            if std::mem::replace(&mut self.seen[index as usize], true) {
                 return Err(ShadowError::DuplicateSlot {
                     field: "PoolFrame::lights.slot",
                     index,
@@ -204,6 +207,8 @@ macro_rules! pool {
             maps: LightMaps,
             lights: LocalLights,
             slots: Slots,
+            /// Empty between frames; kept for its memory.
+            placements: Vec<LocalPlacement>,
         }
 
         impl $pool {
@@ -236,7 +241,9 @@ macro_rules! pool {
                     lights: LocalLights::new(descriptor.capacity),
                     slots: Slots {
                         tickets: vec![None; descriptor.capacity as usize],
+                        seen: Vec::new(),
                     },
+                    placements: Vec::new(),
                 })
             }
 
@@ -276,12 +283,13 @@ macro_rules! pool {
                 frame: &PoolFrame<'_, $light>,
             ) -> Result<&ShadowReport, ShadowError> {
                 self.slots.check_frame(frame.lights)?;
-                let lights = frame
-                    .lights
-                    .iter()
-                    .map(|$entry| $placement)
-                    .collect::<Result<Vec<LocalPlacement>, ShadowError>>()?;
-                self.lights.record(
+                let mut lights = std::mem::take(&mut self.placements);
+                lights.clear();
+                for $entry in frame.lights {
+                    let placement: Result<LocalPlacement, ShadowError> = $placement;
+                    lights.push(placement?);
+                }
+                let report = self.lights.record(
                     &mut self.maps,
                     device,
                     encoder,
@@ -294,7 +302,9 @@ macro_rules! pool {
                         max_views: frame.max_views,
                         fields: &FIELDS,
                     },
-                )
+                );
+                self.placements = lights;
+                report
             }
         }
     };

@@ -76,17 +76,18 @@ impl Reached {
 
 /// How far the light matters: its range, or the farthest corner of anything where the range goes beyond.
 pub(crate) fn reach(input: &LocalInput<'_>, light: DVec3) -> f64 {
-    input
-        .casters
-        .iter()
-        .chain(input.receivers)
-        .filter(|bounds| !bounds.is_empty())
-        .map(|bounds| {
+    let mut farthest: f64 = 0.0;
+    for bounds in input.casters.iter().chain(input.receivers) {
+        if !bounds.is_empty() {
             let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
-            (light - min).abs().max((light - max).abs()).length()
-        })
-        .fold(0.0, f64::max)
-        .min(input.range)
+            let corner = (light - min).abs().max((light - max).abs());
+            farthest = farthest.max(corner.length());
+            if farthest >= input.range {
+                return input.range;
+            }
+        }
+    }
+    farthest
 }
 
 fn intersection(a: &Aabb, b: &Aabb) -> Aabb {
