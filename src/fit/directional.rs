@@ -218,7 +218,7 @@ fn fit_window(
         max: covered.max.truncate(),
         map_size: limits.map_size,
         margin_texels: limits.margin_texels,
-        texel_floor: texel_floor(input, &covered),
+        texel_floor: texel_floor(input, &covered, required.max.z),
         whole: f64::INFINITY,
     };
     let plane = MapWindow::fit(&request, held.map(|held| &held.plane));
@@ -250,12 +250,14 @@ fn fit_window(
     })
 }
 
-/// Four ulps of f32 at the farthest render coordinate of the covered box: finer texels than positions would resolve nothing.
-fn texel_floor(input: &FitInput<'_>, covered: &LightBox) -> f64 {
+/// Four ulps of f32 at the farthest render coordinate of what is covered, up to the highest receiver: finer texels than
+/// receivers' positions would resolve nothing. How high a caster stands above them does not count.
+fn texel_floor(input: &FitInput<'_>, covered: &LightBox, highest_receiver: f64) -> f64 {
     let origin_light = input.axes.light_from_world * input.origin;
+    let highest = covered.max.with_z(highest_receiver);
     let reach = (covered.min - origin_light)
         .abs()
-        .max((covered.max - origin_light).abs())
+        .max((highest - origin_light).abs())
         .max_element();
     4.0 * f64::from(f32::EPSILON) * reach.max(f64::from(f32::MIN_POSITIVE) * 1e8)
 }
