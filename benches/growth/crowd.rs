@@ -13,7 +13,8 @@ use crate::support::random::Random;
 /// Boxes on a square of ground, one caster each.
 pub struct Crowd {
     pub boxes: Vec<BoxCaster>,
-    /// The same boxes as one mesh, for drawing without the library.
+    /// The same boxes as meshes, and as one, for drawing without the library.
+    pub parts: Vec<Mesh>,
     pub mesh: Mesh,
 }
 
@@ -92,6 +93,7 @@ impl Crowd {
                 indices: joined.collect(),
                 positions,
             },
+            parts: meshes,
         }
     }
 

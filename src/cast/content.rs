@@ -57,8 +57,9 @@ struct Drawn {
 const STILL_AFTER: u32 = 4;
 
 /// A still part pays where drawing it again would cost more than copying a layer. So many texels of copying come to a draw, and
-/// so many to a triangle: `cargo bench --bench cost`, "still part".
-const TEXELS_PER_DRAW: u64 = 4096;
+/// so many to a triangle. In software a draw of a box costs as much as copying 100 000 (`cargo bench --bench cost`, "still
+/// part"); a third of that leaves room for devices that draw faster beside their memory.
+const TEXELS_PER_DRAW: u64 = 32_768;
 const TEXELS_PER_TRIANGLE: u64 = 16;
 
 /// Longest time, in draws, for which no part is made after one that did not last.

@@ -1,5 +1,7 @@
 //! Vertex buffers in world space, and the passes that draw them.
 
+use std::ops::Range;
+
 use glam::{DMat4, DVec3, Mat4, Vec3, Vec4};
 
 use super::super::gpu::Gpu;
@@ -16,7 +18,8 @@ pub struct WorldMeshes {
 struct DrawnMesh {
     vertices: wgpu::Buffer,
     indices: wgpu::Buffer,
-    index_count: u32,
+    indices_drawn: Range<u32>,
+    base_vertex: i32,
 }
 
 /// Mirror of `View` in the shaders.
@@ -56,8 +59,33 @@ impl WorldMeshes {
             DrawnMesh {
                 vertices: gpu.buffer(&positions, wgpu::BufferUsages::VERTEX),
                 indices: gpu.buffer(&mesh.indices, wgpu::BufferUsages::INDEX),
-                index_count: mesh.indices.len() as u32,
+                indices_drawn: 0..mesh.indices.len() as u32,
+                base_vertex: 0,
             }
+        });
+        Self {
+            meshes: meshes.collect(),
+        }
+    }
+
+    /// The same in one pair of buffers, a draw each.
+    pub fn in_shared_buffers(gpu: &Gpu, meshes: &[Mesh]) -> Self {
+        let positions: Vec<Vec3> = meshes.iter().flat_map(|m| &m.positions).copied().collect();
+        let corners: Vec<u32> = meshes.iter().flat_map(|m| &m.indices).copied().collect();
+        let vertices = gpu.buffer(&positions, wgpu::BufferUsages::VERTEX);
+        let indices = gpu.buffer(&corners, wgpu::BufferUsages::INDEX);
+        let (mut base_vertex, mut first_index) = (0, 0);
+        let meshes = meshes.iter().map(|mesh| {
+            let end = first_index + mesh.indices.len() as u32;
+            let drawn = DrawnMesh {
+                vertices: vertices.clone(),
+                indices: indices.clone(),
+                indices_drawn: first_index..end,
+                base_vertex,
+            };
+            base_vertex += mesh.positions.len() as i32;
+            first_index = end;
+            drawn
         });
         Self {
             meshes: meshes.collect(),
@@ -93,7 +121,7 @@ impl WorldMeshes {
         for mesh in &self.meshes {
             pass.set_vertex_buffer(0, mesh.vertices.slice(..));
             pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
-            pass.draw_indexed(0..mesh.index_count, 0, 0..1);
+            pass.draw_indexed(mesh.indices_drawn.clone(), mesh.base_vertex, 0..1);
         }
     }
 }
