@@ -14,7 +14,8 @@ pub enum Stability {
     #[default]
     Rungs,
     /// A sphere around each slice of the camera's own volume, receivers or none: the extent depends on the projection and the
-    /// distance limit alone, so that no motion of the camera changes it. A quarter as many texels fall on what is seen. Needs a far plane or a `max_distance`.
+    /// distance limit alone, so that no motion of the camera changes it. A quarter as many texels fall on what is seen. Needs
+    /// a far plane or a `max_distance`.
     Rotation,
 }
 
