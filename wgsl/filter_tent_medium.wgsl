@@ -11,23 +11,37 @@ fn shadow_filter_tent_medium(
     let base = floor(from_centers);
     let s = from_centers - base;
     let first = base - 2.0;
-    // Weights of pairs of texels along each axis, times twelve.
-    var across = array<vec2<f32>, 3>(
-        vec2<f32>(1.0 - s.x, 3.0 - 2.0 * s.x),
-        vec2<f32>(4.0 - s.x, 3.0 + s.x),
-        vec2<f32>(1.0 + 2.0 * s.x, s.x),
-    );
-    var down = array<vec2<f32>, 3>(
-        vec2<f32>(1.0 - s.y, 3.0 - 2.0 * s.y),
-        vec2<f32>(4.0 - s.y, 3.0 + s.y),
-        vec2<f32>(1.0 + 2.0 * s.y, s.y),
-    );
-    var lit = 0.0;
-    for (var y = 0u; y < 3u; y++) {
-        for (var x = 0u; x < 3u; x++) {
-            let block = shadow_gather(map, map_sampler, receiver, first + 2.0 * vec2<f32>(vec2<u32>(x, y)));
-            lit += dot(block, vec4<f32>(across[x] * down[y].x, across[x] * down[y].y));
-        }
-    }
+    let across = shadow_tent_medium_weights(s.x);
+    let down = shadow_tent_medium_weights(s.y);
+    // Written out: a loop would be bounded and not be unrolled.
+    let lit = shadow_tent_medium_rows(map, map_sampler, receiver, first, across, down[0])
+        + shadow_tent_medium_rows(map, map_sampler, receiver, first + vec2<f32>(0.0, 2.0), across, down[1])
+        + shadow_tent_medium_rows(map, map_sampler, receiver, first + vec2<f32>(0.0, 4.0), across, down[2]);
     return shadow_sharpen(lit / 144.0, receiver.sharpness);
+}
+
+// Weights of three pairs of texels along an axis, times twelve.
+fn shadow_tent_medium_weights(s: f32) -> mat3x2<f32> {
+    return mat3x2<f32>(
+        vec2<f32>(1.0 - s, 3.0 - 2.0 * s),
+        vec2<f32>(4.0 - s, 3.0 + s),
+        vec2<f32>(1.0 + 2.0 * s, s),
+    );
+}
+
+// Two rows of six texels.
+fn shadow_tent_medium_rows(
+    map: texture_depth_2d_array,
+    map_sampler: sampler,
+    receiver: ShadowReceiver,
+    first: vec2<f32>,
+    across: mat3x2<f32>,
+    down: vec2<f32>,
+) -> f32 {
+    let left = shadow_gather(map, map_sampler, receiver, first);
+    let middle = shadow_gather(map, map_sampler, receiver, first + vec2<f32>(2.0, 0.0));
+    let right = shadow_gather(map, map_sampler, receiver, first + vec2<f32>(4.0, 0.0));
+    return dot(left, vec4<f32>(across[0] * down.x, across[0] * down.y))
+        + dot(middle, vec4<f32>(across[1] * down.x, across[1] * down.y))
+        + dot(right, vec4<f32>(across[2] * down.x, across[2] * down.y));
 }

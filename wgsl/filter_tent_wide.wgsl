@@ -11,25 +11,41 @@ fn shadow_filter_tent_wide(
     let base = floor(from_centers);
     let s = from_centers - base;
     let first = base - 3.0;
-    // Weights of pairs of texels along each axis, times fifty-two.
-    var across = array<vec2<f32>, 4>(
-        vec2<f32>(1.0 - s.x, 5.0 - 4.0 * s.x),
-        vec2<f32>(12.0 - 7.0 * s.x, 16.0 - 4.0 * s.x),
-        vec2<f32>(12.0 + 4.0 * s.x, 5.0 + 7.0 * s.x),
-        vec2<f32>(1.0 + 4.0 * s.x, s.x),
-    );
-    var down = array<vec2<f32>, 4>(
-        vec2<f32>(1.0 - s.y, 5.0 - 4.0 * s.y),
-        vec2<f32>(12.0 - 7.0 * s.y, 16.0 - 4.0 * s.y),
-        vec2<f32>(12.0 + 4.0 * s.y, 5.0 + 7.0 * s.y),
-        vec2<f32>(1.0 + 4.0 * s.y, s.y),
-    );
-    var lit = 0.0;
-    for (var y = 0u; y < 4u; y++) {
-        for (var x = 0u; x < 4u; x++) {
-            let block = shadow_gather(map, map_sampler, receiver, first + 2.0 * vec2<f32>(vec2<u32>(x, y)));
-            lit += dot(block, vec4<f32>(across[x] * down[y].x, across[x] * down[y].y));
-        }
-    }
+    let across = shadow_tent_wide_weights(s.x);
+    let down = shadow_tent_wide_weights(s.y);
+    // Written out: a loop would be bounded and not be unrolled.
+    let lit = shadow_tent_wide_rows(map, map_sampler, receiver, first, across, down[0])
+        + shadow_tent_wide_rows(map, map_sampler, receiver, first + vec2<f32>(0.0, 2.0), across, down[1])
+        + shadow_tent_wide_rows(map, map_sampler, receiver, first + vec2<f32>(0.0, 4.0), across, down[2])
+        + shadow_tent_wide_rows(map, map_sampler, receiver, first + vec2<f32>(0.0, 6.0), across, down[3]);
     return shadow_sharpen(lit / 2704.0, receiver.sharpness);
+}
+
+// Weights of four pairs of texels along an axis, times fifty-two.
+fn shadow_tent_wide_weights(s: f32) -> mat4x2<f32> {
+    return mat4x2<f32>(
+        vec2<f32>(1.0 - s, 5.0 - 4.0 * s),
+        vec2<f32>(12.0 - 7.0 * s, 16.0 - 4.0 * s),
+        vec2<f32>(12.0 + 4.0 * s, 5.0 + 7.0 * s),
+        vec2<f32>(1.0 + 4.0 * s, s),
+    );
+}
+
+// Two rows of eight texels.
+fn shadow_tent_wide_rows(
+    map: texture_depth_2d_array,
+    map_sampler: sampler,
+    receiver: ShadowReceiver,
+    first: vec2<f32>,
+    across: mat4x2<f32>,
+    down: vec2<f32>,
+) -> f32 {
+    let outer_left = shadow_gather(map, map_sampler, receiver, first);
+    let left = shadow_gather(map, map_sampler, receiver, first + vec2<f32>(2.0, 0.0));
+    let right = shadow_gather(map, map_sampler, receiver, first + vec2<f32>(4.0, 0.0));
+    let outer_right = shadow_gather(map, map_sampler, receiver, first + vec2<f32>(6.0, 0.0));
+    return dot(outer_left, vec4<f32>(across[0] * down.x, across[0] * down.y))
+        + dot(left, vec4<f32>(across[1] * down.x, across[1] * down.y))
+        + dot(right, vec4<f32>(across[2] * down.x, across[2] * down.y))
+        + dot(outer_right, vec4<f32>(across[3] * down.x, across[3] * down.y));
 }
