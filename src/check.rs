@@ -97,7 +97,7 @@ pub(crate) fn filter(field: &'static str, filter: Filter) -> Result<(), ShadowEr
             radius,
         );
     }
-    if let Filter::Penumbra { light_size } = filter {
+    if let Filter::Penumbra { light_size } | Filter::PenumbraTurned { light_size } = filter {
         return in_range(
             field,
             "of a finite light size above 0",

@@ -79,6 +79,11 @@ pub const MODULES: &[ShaderModule] = &[
         "filter_penumbra.wgsl",
         ["view", "gather", "filter_tent_narrow"]
     ),
+    module!(
+        "filter_penumbra_turned",
+        "filter_penumbra_turned.wgsl",
+        ["view", "filter_penumbra"]
+    ),
     module!("filter_direction", "filter_direction.wgsl", ["view"]),
     module!("cube_face", "cube_face.wgsl", []),
     module!("normal", "normal.wgsl", []),

@@ -60,12 +60,22 @@ fn shadow_filter_penumbra(
     map_sampler: sampler,
     receiver: ShadowReceiver,
 ) -> f32 {
+    return shadow_penumbra(map, map_sampler, receiver, mat2x2<f32>(1.0, 0.0, 0.0, 1.0));
+}
+
+// The same with both patterns turned by `turn`.
+fn shadow_penumbra(
+    map: texture_depth_2d_array,
+    map_sampler: sampler,
+    receiver: ShadowReceiver,
+    turn: mat2x2<f32>,
+) -> f32 {
     let reach = vec2<f32>(SHADOW_PENUMBRA_REACH);
     let widest = clamp(receiver.penumbra * (1.0 - receiver.depth), vec2<f32>(1.0), reach);
     var found = vec2<f32>(0.0);
     for (var i = 0u; i < SHADOW_PENUMBRA_SEARCH_TAPS; i++) {
         let sample = shadow_search_disk(i, SHADOW_PENUMBRA_SEARCH_TAPS);
-        let first = floor(receiver.texel + sample.xy * widest - 0.5);
+        let first = floor(receiver.texel + (turn * sample.xy) * widest - 0.5);
         found += sample.z * shadow_occluders(map, map_sampler, receiver, first);
     }
     if found.y == 0.0 {
@@ -78,7 +88,7 @@ fn shadow_filter_penumbra(
     }
     var lit = 0.0;
     for (var i = 0u; i < SHADOW_PENUMBRA_FILTER_TAPS; i++) {
-        let place = receiver.texel + shadow_disk(i, SHADOW_PENUMBRA_FILTER_TAPS) * radius - 0.5;
+        let place = receiver.texel + (turn * shadow_disk(i, SHADOW_PENUMBRA_FILTER_TAPS)) * radius - 0.5;
         let first = floor(place);
         let s = place - first;
         let block = shadow_gather(map, map_sampler, receiver, first);

@@ -45,7 +45,8 @@ struct ShadowView {
     penumbra: vec2<f32>,
     // Texels from the border within which a cascade gives way to the next.
     fade_texels: f32,
-    padding: f32,
+    // Where the first texel lies in a grid that is fixed in the world, modulo 65536: x in the low half, y in the high.
+    grid: u32,
 }
 
 struct ShadowReceiver {
@@ -59,6 +60,8 @@ struct ShadowReceiver {
     sharpness: f32,
     // Radius of a penumbra in texels per difference of depth.
     penumbra: vec2<f32>,
+    // The map's first texel in a grid that is fixed in the world.
+    grid: u32,
     // `shadow_view_holds` of the place: where it is false, the lookup means nothing and the place is lit.
     inside: bool,
 }
@@ -113,6 +116,7 @@ fn shadow_receiver_at(
     receiver.map_size = view.map_size;
     receiver.sharpness = view.sharpness;
     receiver.penumbra = view.penumbra;
+    receiver.grid = view.grid;
     receiver.inside = shadow_view_holds(view, position);
     return receiver;
 }

@@ -225,6 +225,9 @@ fn filters(extent: Extent) -> Vec<Filter> {
         Filter::Penumbra {
             light_size: SUN_DIAMETER_RADIANS as f32,
         },
+        Filter::PenumbraTurned {
+            light_size: SUN_DIAMETER_RADIANS as f32,
+        },
         Filter::DirectionGrid { radius: 0.1 },
         Filter::DirectionStar { radius: 0.04 },
     ]);
@@ -250,6 +253,7 @@ pub fn filter_name(filter: Filter) -> String {
         Filter::TentMedium { .. } => "tent 5x5",
         Filter::TentWide { .. } => "tent 7x7",
         Filter::Penumbra { .. } => "penumbra",
+        Filter::PenumbraTurned { .. } => "penumbra turned",
         Filter::DirectionGrid { .. } => "direction grid",
         Filter::DirectionStar { .. } => "direction star",
         _ => "other",

@@ -67,6 +67,7 @@ fn edge_aliasing_texels(filter: Filter) -> f64 {
                 depth: 0.5,
                 gradient: DVec2::ZERO,
                 penumbra: DVec2::ZERO,
+                grid: 0,
                 inside: true,
             };
             let lit = visibility(filter, &layer, &receiver) >= 0.5;

@@ -297,7 +297,9 @@ fn texels_touched(filter: Filter) -> u32 {
         Filter::TentMedium { .. } => 36,
         Filter::TentWide { .. } => 64,
         // Four texels a gather.
-        Filter::Penumbra { .. } => 4 * filter.texture_instructions(),
+        Filter::Penumbra { .. } | Filter::PenumbraTurned { .. } => {
+            4 * filter.texture_instructions()
+        }
         // One texel a sample.
         _ => filter.texture_instructions(),
     }

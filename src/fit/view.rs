@@ -219,6 +219,18 @@ impl ShadowView {
         }
     }
 
+    /// Where the first texel lies in a grid of such texels that is fixed in the world (for a local light around it), modulo
+    /// 65536: x in the low half, y, which grows downward, in the high.
+    pub(crate) fn world_grid(&self) -> u32 {
+        let plane = match &self.placement {
+            ViewPlacement::Orthographic { window, .. } => &window.plane,
+            ViewPlacement::Perspective { window, .. } => window,
+        };
+        let first = DVec2::new(plane.min.x, -plane.max().y) / plane.texel;
+        let wrapped = first.round().rem_euclid(DVec2::splat(65_536.0));
+        wrapped.x as u32 | (wrapped.y as u32) << 16
+    }
+
     pub(crate) fn placement(&self) -> &ViewPlacement {
         &self.placement
     }

@@ -14,7 +14,7 @@ const PENUMBRA_REACH_TEXELS: f64 = 33.0;
 /// | `TentNarrow` | 16 | 4 gathers | 2 |
 /// | `TentMedium` | 36 | 9 gathers | 3 |
 /// | `TentWide` | 64 | 16 gathers | 4 |
-/// | `Penumbra` | 240 | 60 gathers | 32 |
+/// | `Penumbra`, `PenumbraTurned` | 240 | 60 gathers | 32 |
 /// | `DirectionGrid` | 64 | 64 gathers | 0.5 a sample |
 /// | `DirectionStar` | 20 | 20 gathers | 0.5 a sample |
 ///
@@ -58,6 +58,12 @@ pub enum Filter {
         /// For directional lights the angular diameter in radians (the sun's is 0.0093), below π; for local lights the radius
         /// in world units. Above 0 and finite; too large a value blurs shadows away from their casters, too small a one makes
         /// them hard.
+        light_size: f32,
+    },
+    /// `Penumbra` with its taps turned by an angle of each half texel's own: grain in place of bands, for lights so large that
+    /// penumbrae span some ten texels and more. The grain is fixed in the world and does not swim when the camera moves.
+    PenumbraTurned {
+        /// As for `Penumbra`.
         light_size: f32,
     },
     /// Point lights only: the textbook's 4×4×4 nearest comparisons in a cube of directions around the receiver's own.
@@ -107,7 +113,7 @@ impl Filter {
             Self::TentNarrow { .. } => 2.0,
             Self::TentMedium { .. } => 3.0,
             Self::TentWide { .. } => 4.0,
-            Self::Penumbra { .. } => PENUMBRA_REACH_TEXELS,
+            Self::Penumbra { .. } | Self::PenumbraTurned { .. } => PENUMBRA_REACH_TEXELS,
         }
     }
 
@@ -119,7 +125,7 @@ impl Filter {
             | Self::TentMedium { sharpness }
             | Self::TentWide { sharpness } => sharpness,
             // The tent that stands in where a penumbra is narrower than a texel.
-            Self::Penumbra { .. } => 3.0,
+            Self::Penumbra { .. } | Self::PenumbraTurned { .. } => 3.0,
             Self::Nearest
             | Self::Hardware
             | Self::Box
@@ -128,10 +134,10 @@ impl Filter {
         }
     }
 
-    /// Size of the light for [`Filter::Penumbra`]; 0 for the others.
+    /// Size of the light for [`Filter::Penumbra`] and [`Filter::PenumbraTurned`]; 0 for the others.
     pub const fn light_size(self) -> f32 {
         match self {
-            Self::Penumbra { light_size } => light_size,
+            Self::Penumbra { light_size } | Self::PenumbraTurned { light_size } => light_size,
             _ => 0.0,
         }
     }
@@ -165,7 +171,7 @@ impl Filter {
             Self::Box | Self::TentNarrow { .. } => 4,
             Self::TentMedium { .. } => 9,
             Self::TentWide { .. } => 16,
-            Self::Penumbra { .. } => 60,
+            Self::Penumbra { .. } | Self::PenumbraTurned { .. } => 60,
             Self::DirectionGrid { .. } => 64,
             Self::DirectionStar { .. } => 20,
         }
@@ -184,6 +190,7 @@ impl Filter {
             Self::TentMedium { .. } => ("filter_tent_medium", FilterSampler::Point),
             Self::TentWide { .. } => ("filter_tent_wide", FilterSampler::Point),
             Self::Penumbra { .. } => ("filter_penumbra", FilterSampler::Point),
+            Self::PenumbraTurned { .. } => ("filter_penumbra_turned", FilterSampler::Point),
         }
     }
 }

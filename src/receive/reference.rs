@@ -3,7 +3,7 @@
 //! For an engine's own tests, and for the library's: the device's result is compared with this. Kernels are written here as
 //! what they are, a bilinear comparison convolved with a row of integers, not as the shader's closed form.
 
-use glam::{DMat4, DVec2, DVec3, DVec4, I64Vec2, Mat4, Vec2, Vec3, Vec4};
+use glam::{DMat4, DVec2, DVec3, DVec4, I64Vec2, Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use crate::receive::bias::BiasScheme;
 use crate::receive::{Bias, Filter, ShadowViewUniform};
@@ -37,6 +37,8 @@ pub struct Receiver {
     pub gradient: DVec2,
     /// Radius of a penumbra in texels per difference of depth.
     pub penumbra: DVec2,
+    /// Where the map's first texel lies in a grid that is fixed in the world, as `ShadowViewUniform::grid`.
+    pub grid: u32,
     /// [`holds`] of the place; where it is false, visibility is 1.
     pub inside: bool,
 }
@@ -111,8 +113,10 @@ pub fn visibility(filter: Filter, map: &DepthLayer<'_>, receiver: &Receiver) -> 
     if !receiver.inside || !is_on_map(receiver.texel, size) {
         return 1.0;
     }
-    if let Filter::Penumbra { .. } = filter {
-        return penumbra(map, receiver);
+    match filter {
+        Filter::Penumbra { .. } => return penumbra(map, receiver, DVec2::X),
+        Filter::PenumbraTurned { .. } => return penumbra(map, receiver, turn(receiver)),
+        _ => {}
     }
     let mut receiver = *receiver;
     if !filter.compares_each_texel() {
@@ -171,7 +175,7 @@ fn sharpened(visibility: f64, sharpness: f64) -> f64 {
 }
 
 /// `wgsl/filter_penumbra.wgsl`.
-fn penumbra(map: &DepthLayer<'_>, receiver: &Receiver) -> f64 {
+fn penumbra(map: &DepthLayer<'_>, receiver: &Receiver, turn: DVec2) -> f64 {
     const REACH: f64 = 32.0;
     let widest =
         (receiver.penumbra * (1.0 - receiver.depth)).clamp(DVec2::ONE, DVec2::splat(REACH));
@@ -179,7 +183,7 @@ fn penumbra(map: &DepthLayer<'_>, receiver: &Receiver) -> f64 {
     for index in 0..24 {
         // closer together toward the middle, weighted by the area that each sample stands for
         let t = (f64::from(index) + 0.5) / 24.0;
-        let offset = DVec2::from_angle(f64::from(index) * GOLDEN_ANGLE) * t.powf(1.5);
+        let offset = turn.rotate(DVec2::from_angle(f64::from(index) * GOLDEN_ANGLE)) * t.powf(1.5);
         let first = (receiver.texel + offset * widest - 0.5)
             .floor()
             .as_i64vec2();
@@ -203,11 +207,26 @@ fn penumbra(map: &DepthLayer<'_>, receiver: &Receiver) -> f64 {
         3.0,
     );
     let soft = disk(32)
-        .map(|offset| bilinear(map, receiver, receiver.texel + offset * radius, &[1.0]))
+        .map(|offset| {
+            let place = receiver.texel + turn.rotate(offset) * radius;
+            bilinear(map, receiver, place, &[1.0])
+        })
         .sum::<f64>()
         / 32.0;
     let share = (radius.max_element() - 1.0).clamp(0.0, 1.0);
     hard + (soft - hard) * share
+}
+
+/// Cosine and sine by which the half texel of a receiver turns its patterns, as `wgsl/filter_penumbra_turned.wgsl`.
+fn turn(receiver: &Receiver) -> DVec2 {
+    let half_texel = (receiver.texel.max(DVec2::ZERO) * 2.0).as_uvec2();
+    let first = UVec2::new(receiver.grid & 0xffff, receiver.grid >> 16);
+    let cell = half_texel.wrapping_add(first * 2) & UVec2::splat(0x1_ffff);
+    let mut bits = cell.x.wrapping_mul(0x9e37_79b1) ^ cell.y.wrapping_mul(0x85eb_ca77);
+    bits = (bits ^ (bits >> 16)).wrapping_mul(0x7feb_352d);
+    bits = (bits ^ (bits >> 15)).wrapping_mul(0x846c_a68b);
+    bits ^= bits >> 16;
+    DVec2::from_angle(f64::from(bits >> 8) * std::f64::consts::TAU / 16_777_216.0)
 }
 
 const GOLDEN_ANGLE: f64 = std::f64::consts::TAU * 0.38196601;
@@ -235,9 +254,10 @@ fn kernel(filter: Filter) -> Kernel {
         }
         Filter::Box => Kernel::Boxed(1),
         // A penumbra is made of bilinear lookups.
-        Filter::Hardware | Filter::Bilinear { .. } | Filter::Penumbra { .. } => {
-            Kernel::Bilinear(&[1.0])
-        }
+        Filter::Hardware
+        | Filter::Bilinear { .. }
+        | Filter::Penumbra { .. }
+        | Filter::PenumbraTurned { .. } => Kernel::Bilinear(&[1.0]),
         Filter::TentNarrow { .. } => Kernel::Bilinear(&[1.0, 2.0, 1.0]),
         Filter::TentMedium { .. } => Kernel::Bilinear(&[1.0, 3.0, 4.0, 3.0, 1.0]),
         Filter::TentWide { .. } => Kernel::Bilinear(&[1.0, 5.0, 12.0, 16.0, 12.0, 5.0, 1.0]),
@@ -345,6 +365,7 @@ fn receiver_at(
         },
         gradient,
         penumbra: Vec2::from_array(view.penumbra).as_dvec2(),
+        grid: view.grid,
         inside: holds(view, position),
     }
 }

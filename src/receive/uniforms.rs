@@ -58,8 +58,8 @@ pub struct ShadowViewUniform {
     pub penumbra: [f32; 2],
     /// Texels from the border within which a cascade gives way to the next; 0 for an end without one.
     pub fade_texels: f32,
-    /// WGSL rounds the struct up to 16 bytes.
-    pub padding: f32,
+    /// Where the first texel lies in a grid that is fixed in the world, modulo 65536: x in the low half, y in the high.
+    pub grid: u32,
 }
 
 /// A range for the uniforms: an endless one becomes a distance that none exceeds and whose square is finite.
@@ -161,6 +161,6 @@ pub(crate) fn view_uniform(view: &ShadowView, sampling: &Sampling) -> ShadowView
             .as_vec2()
             .to_array(),
         fade_texels: sampling.blend * view.map_size() as f32,
-        padding: 0.0,
+        grid: view.world_grid(),
     }
 }

@@ -33,6 +33,8 @@ mod omni_input;
 mod out_of_range;
 mod own_layout;
 mod penumbra;
+mod penumbra_turned;
+mod penumbra_twin;
 mod pool;
 mod pool_budget;
 mod receiver_parity;

@@ -73,7 +73,7 @@ fn shadow_view_is_one_layout() {
         viewer,
         penumbra,
         fade_texels,
-        padding,
+        grid,
     });
     assert_eq!(wgsl, rust);
     assert_eq!(span, size_of::<ShadowViewUniform>());

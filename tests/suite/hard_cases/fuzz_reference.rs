@@ -40,6 +40,7 @@ fn any_numbers_in_the_reference_get_a_visibility() {
             depth: f64::from(texel.z),
             gradient: gradient.truncate().as_dvec2(),
             penumbra: DVec2::splat(f64::from(gradient.z)),
+            grid: view.grid,
             inside: true,
         };
         let twin = receiver(&view, filter, bias, position, normal);

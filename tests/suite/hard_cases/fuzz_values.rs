@@ -100,7 +100,7 @@ fn camera() -> impl Strategy<Value = CameraView> {
 }
 
 pub fn filter() -> impl Strategy<Value = Filter> {
-    (0..10, number()).prop_map(|(kind, x)| match kind {
+    (0..11, number()).prop_map(|(kind, x)| match kind {
         0 => Filter::Nearest,
         1 => Filter::Hardware,
         2 => Filter::Box,
@@ -109,7 +109,8 @@ pub fn filter() -> impl Strategy<Value = Filter> {
         5 => Filter::TentMedium { sharpness: x },
         6 => Filter::TentWide { sharpness: x },
         7 => Filter::Penumbra { light_size: x },
-        8 => Filter::DirectionGrid { radius: x },
+        8 => Filter::PenumbraTurned { light_size: x },
+        9 => Filter::DirectionGrid { radius: x },
         _ => Filter::DirectionStar { radius: x },
     })
 }
