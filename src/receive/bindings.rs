@@ -158,14 +158,15 @@ fn check_names(lights: &Lights<'_>) -> Result<(), BindingsError> {
     Ok(())
 }
 
-/// Would `shadow_NAME` meet a name of the library's own: of a module, a sampler, or another light's map or views?
+/// Would what is emitted for a light meet a name of the library's own: of a module, a sampler, or another light's map or views?
 fn is_taken(name: &str) -> bool {
-    let identifier = format!("shadow_{name}");
+    let identifiers =
+        ["", "view_", "views_", "map_"].map(|prefix| format!("shadow_{prefix}{name}"));
     let in_modules = shader::MODULES.iter().any(|module| {
         let mut words = module
             .source
             .split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
-        words.any(|word| word == identifier)
+        words.any(|word| identifiers.iter().any(|identifier| identifier == word))
     });
     in_modules
         || ["point_sampler", "comparison_sampler"].contains(&name)
