@@ -291,11 +291,9 @@ impl LightMaps {
         self.recorder.needs(draws, casters)
     }
 
-    /// The views that the last frame left in `layers`.
-    pub fn views_in(&self, layers: std::ops::Range<u32>) -> impl Iterator<Item = &ViewDraws> {
-        self.views
-            .iter()
-            .filter(move |draws| layers.contains(&draws.view.layer()))
+    /// Does the layer of `view` hold what was last drawn for it?
+    pub fn holds(&self, view: &ShadowView) -> bool {
+        self.recorder.holds(view)
     }
 }
 

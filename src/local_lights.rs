@@ -27,7 +27,9 @@ struct SlotState {
     waited: u32,
     /// Its layers have been drawn, or found to need nothing, since it came.
     has_map: bool,
-    /// Where it stood when they were drawn.
+    /// What was put into them then.
+    views: [Option<ShadowView>; MAX_LOCAL_VIEWS],
+    /// Where it stood then.
     position_world: DVec3,
 }
 
@@ -73,7 +75,9 @@ pub(crate) struct LocalFields {
 #[derive(Debug)]
 struct Candidate {
     fit: LocalFit,
-    views: [Option<ViewDraws>; MAX_LOCAL_VIEWS],
+    draws: [Option<ViewDraws>; MAX_LOCAL_VIEWS],
+    /// The views of `draws`.
+    views: [Option<ShadowView>; MAX_LOCAL_VIEWS],
     /// Views that need a pass.
     needed: u32,
     refreshed: bool,
@@ -144,14 +148,19 @@ impl LocalLights {
                 deferred: !candidate.refreshed,
                 slice: None,
             }));
+            let draws = candidate.draws.iter_mut().filter_map(Option::take);
             if candidate.refreshed {
-                views.extend(candidate.views.iter_mut().filter_map(Option::take));
-            } else if state.has_map {
-                let held = maps.views_in(first_layer..first_layer + light.view_count);
-                views.extend(held.map(|draws| ViewDraws {
-                    deferred: true,
-                    ..ViewDraws::new(draws.view.rebased(frame.origin), Vec::new())
-                }));
+                views.extend(draws);
+                continue;
+            }
+            draws.for_each(|draws| maps.return_list(draws.casters));
+            for view in state.views.iter().flatten() {
+                if maps.holds(view) {
+                    views.push(ViewDraws {
+                        deferred: true,
+                        ..ViewDraws::new(view.rebased(frame.origin), maps.spare_list())
+                    });
+                }
             }
         }
         let maps_frame = MapsFrame {
@@ -170,6 +179,7 @@ impl LocalLights {
                     fit: candidate.fit,
                     waited: 0,
                     has_map: true,
+                    views: candidate.views,
                     position_world: light.position_world,
                 };
             } else {
@@ -207,7 +217,8 @@ impl LocalLights {
         let mut drawn: [Vec<u32>; MAX_LOCAL_VIEWS] = std::array::from_fn(|_| maps.spare_list());
         let held = &self.slots[light.slot as usize].fit;
         let fit = held.fit(&input, &mut self.reached, &mut drawn);
-        let mut views = [const { None }; MAX_LOCAL_VIEWS];
+        let mut draws = [const { None }; MAX_LOCAL_VIEWS];
+        let mut views = [None; MAX_LOCAL_VIEWS];
         let mut needed = 0;
         for (index, casters) in drawn.into_iter().enumerate() {
             let (Some(axes), Some(window)) = (axes.get(index), &fit.windows[index]) else {
@@ -223,13 +234,16 @@ impl LocalLights {
                 frame.origin,
                 light.slot * light.view_count + index as u32,
             );
-            let draws = ViewDraws::new(view.checked()?, casters);
-            needed += u32::from(maps.needs(&draws, frame.casters));
-            views[index] = Some(draws);
+            let view = view.checked()?;
+            let view_draws = ViewDraws::new(view, casters);
+            needed += u32::from(maps.needs(&view_draws, frame.casters));
+            draws[index] = Some(view_draws);
+            views[index] = Some(view);
         }
         Ok(Candidate {
             needed,
             fit,
+            draws,
             views,
             refreshed: true,
         })

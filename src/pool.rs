@@ -62,7 +62,8 @@ pub struct PoolLight<L> {
     /// The light.
     pub light: L,
     /// Who is refreshed first where a budget does not suffice: at least 0, finite; for instance the light's share of the
-    /// picture. A light that is put off counts for one frame more each time, so that none starves.
+    /// picture. A light that is put off counts for one frame more each time, so that none above 0 starves; one at 0 has what
+    /// the others leave.
     pub importance: f32,
 }
 

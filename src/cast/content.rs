@@ -89,9 +89,14 @@ struct StillPart {
 }
 
 impl Content {
+    /// Is it of `view`, whatever the casters?
+    pub fn is_of(&self, view: &ShadowView) -> bool {
+        self.placement == Some(*view.placement())
+    }
+
     /// Is it what `draws` would put there?
     pub fn holds(&self, draws: &ViewDraws, casters: &[&dyn ShadowCaster]) -> bool {
-        self.placement == Some(*draws.view.placement())
+        self.is_of(&draws.view)
             && self.drawn.len() == draws.casters.len()
             && now(draws, casters)
                 .zip(&self.drawn)
@@ -103,7 +108,7 @@ impl Content {
         if draws.deferred || self.holds(draws, casters) {
             return Plan::Keep;
         }
-        if !can_copy || self.placement != Some(*draws.view.placement()) {
+        if !can_copy || !self.is_of(&draws.view) {
             return Plan::All;
         }
         let texels = u64::from(draws.view.map_size()).pow(2);
@@ -142,7 +147,7 @@ impl Content {
         match draws.plan {
             Plan::Keep => return,
             Plan::All => self.part.give_up(),
-            Plan::OverStill => self.part.served += 1,
+            Plan::OverStill => self.part.served = self.part.served.saturating_add(1),
             Plan::RenewStill => {
                 let mut part = std::mem::take(&mut self.part.casters);
                 part.clear();

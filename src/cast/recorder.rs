@@ -122,6 +122,11 @@ impl Recorder {
             .holds(draws, casters)
     }
 
+    /// Does the layer of `view` hold that view, of whatever casters?
+    pub fn holds(&self, view: &ShadowView) -> bool {
+        self.layers[view.layer() as usize].content.is_of(view)
+    }
+
     /// Device memory of the still parts.
     pub fn bytes(&self) -> u64 {
         let parts = self.layers.iter().filter_map(|l| l.still_part.as_ref());

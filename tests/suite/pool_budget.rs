@@ -2,7 +2,8 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, MeshCaster, OmniLight, OmniShadowPool, PoolFrame, PoolLight, ShadowCaster, ViewStatus,
+    Aabb, MeshCaster, OmniLight, OmniShadowPool, PoolFrame, PoolLight, ShadowCaster, ViewReport,
+    ViewStatus,
 };
 
 use crate::suite::pool::{bits, frame, lamp, pool, record};
@@ -186,4 +187,82 @@ fn a_new_light_is_lit_until_its_turn() {
     assert!(waits, "{:?}", row.pool.report().views);
     assert_eq!(row.record(gpu, Some(1)), [0]);
     assert!(row.seen(gpu, 0).contains(&0.0));
+}
+
+/// A light that was not listed for a frame, and is put off when it comes back, shows the map that it had.
+#[test]
+fn a_light_that_comes_back_shows_its_last_map() {
+    let gpu = gpu();
+    let mut row = Row::new(gpu, &[1.0, 8.0]);
+    row.record(gpu, None);
+    let before = row.seen(gpu, 0);
+    assert!(before.contains(&0.0) && before.contains(&1.0));
+    let away = row.lights.remove(0);
+    row.record(gpu, None);
+    assert!(row.seen(gpu, 0).iter().all(|seen| *seen == 1.0));
+    row.lights.insert(0, away);
+    row.move_slabs(gpu, 0.3);
+    assert_eq!(row.record(gpu, Some(1)), [1]);
+    assert_eq!(bits(&row.seen(gpu, 0)), bits(&before));
+}
+
+/// An encoder that is thrown away takes the maps with it: a light that is put off after `invalidate` has none, and is lit. The
+/// map that is still in its layer was drawn from another place.
+#[test]
+fn a_light_whose_map_was_thrown_away_is_lit_until_its_turn() {
+    let gpu = gpu();
+    let mut row = Row::new(gpu, &[1.0, 8.0]);
+    row.record(gpu, None);
+    for light in &mut row.lights {
+        light.light.position_world.z += 0.5;
+    }
+    let lights = row.lights.clone();
+    let casters: Vec<&dyn ShadowCaster> = row.slabs.iter().map(|slab| slab as _).collect();
+    let mut thrown_away = gpu.encoder();
+    row.pool
+        .record(&gpu.device, &mut thrown_away, &frame(&lights, &casters))
+        .expect("a valid frame");
+    drop(thrown_away);
+    row.pool.invalidate();
+    assert_eq!(row.record(gpu, Some(1)), [1]);
+    let seen = row.seen(gpu, 0);
+    assert!(seen.iter().all(|seen| *seen == 1.0), "{seen:?}");
+    assert_eq!(row.record(gpu, Some(1)), [0]);
+    assert!(row.seen(gpu, 0).contains(&0.0));
+}
+
+/// The state of a pool, as text, is as long after 300 frames as after 100, though a light waits through all of them with fewer
+/// views to draw than it shows. (Numbers in it grow by some digits.)
+#[test]
+fn waiting_costs_no_memory() {
+    let gpu = gpu();
+    let mut row = Row::new(gpu, &[0.0, 8.0]);
+    // All around the first lamp, for the first frame only.
+    let lamp = Vec3::Y * 2.0;
+    let around = [Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z].map(|way| {
+        let middle = lamp + way * 1.5;
+        Mesh::cuboid(middle - 0.1, middle + 0.1).caster(gpu, &default_pipeline(gpu), Mat4::IDENTITY)
+    });
+    let lights = row.lights.clone();
+    let mut lengths = Vec::new();
+    for step in 0..300 {
+        row.move_slabs(gpu, step as f32 * 1e-4);
+        let mut casters: Vec<&dyn ShadowCaster> = row.slabs.iter().map(|slab| slab as _).collect();
+        let mut max_views = Some(1);
+        if step == 0 {
+            casters.extend(around.iter().map(|caster| caster as &dyn ShadowCaster));
+            max_views = None;
+        }
+        let frame = PoolFrame {
+            max_views,
+            ..frame(&lights, &casters)
+        };
+        let report = record(gpu, &mut row.pool, &frame).expect("a valid frame");
+        let waits = |view: &ViewReport| view.status == ViewStatus::Deferred;
+        assert_eq!(report.views.iter().any(waits), step > 0);
+        if step % 100 == 99 {
+            lengths.push(format!("{:?}", row.pool).len());
+        }
+    }
+    assert!(lengths[2] < lengths[0] + 400, "{lengths:?}");
 }
