@@ -10,15 +10,29 @@ use crate::{Aabb, ShadowView};
 /// pipeline. What only moves with the engine's `origin` need not. A version that stands still while the geometry moves leaves
 /// a stale shadow behind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Revision(Option<(u64, u64)>);
+pub struct Revision(Option<(Origin, u64, u64)>);
+
+/// Whose ids a revision counts by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Origin {
+    Engine,
+    /// [`MeshCaster`](crate::MeshCaster)s number themselves.
+    Mesh,
+}
 
 impl Revision {
     /// Never equal to what was drawn before: the view is rendered every frame. The safe default.
     pub const ALWAYS_CHANGING: Self = Self(None);
 
-    /// `id` tells this caster from all others of the light; `version` counts its changes.
+    /// `id` tells this caster from all others of the light; `version` counts its changes. No [`MeshCaster`](crate::MeshCaster)
+    /// has the revision of an engine's own caster, whatever the ids.
     pub const fn new(id: u64, version: u64) -> Self {
-        Self(Some((id, version)))
+        Self(Some((Origin::Engine, id, version)))
+    }
+
+    /// Of a ready-made mesh.
+    pub(crate) const fn of_mesh(id: u64, version: u64) -> Self {
+        Self(Some((Origin::Mesh, id, version)))
     }
 
     /// May a map drawn under this revision be kept?

@@ -202,7 +202,7 @@ impl ShadowCaster for MeshCaster {
     }
 
     fn revision(&self) -> Revision {
-        Revision::new(self.id, self.version)
+        Revision::of_mesh(self.id, self.version)
     }
 }
 

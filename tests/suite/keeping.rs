@@ -161,6 +161,24 @@ fn two_meshes_of_the_same_shape_are_two_things() {
     assert_eq!(stage.status(&[&second]), ViewStatus::Drawn);
 }
 
+/// An engine counts the ids of its own casters as it likes: a mesh is none of them, though meshes are numbered too.
+#[test]
+fn meshes_and_an_engines_own_casters_are_never_the_same() {
+    let mut stage = Stage::new();
+    let mesh = slab(stage.gpu);
+    assert_eq!(stage.status(&[&mesh]), ViewStatus::Drawn);
+    let mut own = Watched::new(slab(stage.gpu));
+    // Meshes are numbered from zero, and the tests make fewer than these.
+    for id in 0..1 << 16 {
+        let revision = Revision::new(id, 0);
+        if revision == mesh.revision() || id == 0 {
+            own.revision = Some(revision);
+        }
+    }
+    assert_eq!(stage.status(&[&own]), ViewStatus::Drawn);
+    assert_eq!(stage.status(&[&own]), ViewStatus::Kept);
+}
+
 #[test]
 fn a_caster_that_says_nothing_is_always_drawn() {
     let mut stage = Stage::new();
