@@ -8,7 +8,8 @@ use crate::DepthFormat;
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum DeviceRefusal {
-    /// The device is lost or was destroyed. Nothing made on it works any more: make everything anew on another one.
+    /// The device is lost or was destroyed. Nothing made on it works any more: make everything anew on another one. A frame in
+    /// which nothing is drawn and nothing uploaded asks nothing of the device, and does not notice.
     #[error("the device is lost")]
     Lost,
     /// The device's memory does not suffice.

@@ -2,7 +2,9 @@
 
 use glam::Vec3;
 
-use crate::cast::{DepthMap, Plan, Recorder, ShadowCaster, UploadBuffer, ViewDraws};
+use crate::cast::{
+    DepthMap, Plan, Recorder, ShadowCaster, UploadBuffer, ViewDraws, capture_device_errors,
+};
 use crate::receive::{
     Receiver, Sampling, Selection, ShadowSource, ShadowViewUniform, empty_view_uniform,
     endless_range, view_uniform,
@@ -224,6 +226,14 @@ impl LightMaps {
         let prepared =
             self.recorder
                 .prepare(device, &self.map, &mut views, casters, casters_field)?;
+        let draws = views.iter().any(|draws| draws.plan != Plan::Keep);
+        if draws && upload.is_none() && !prepared.uploads() {
+            // Nothing was made on the device, which so had no occasion to say that it is lost.
+            capture_device_errors(device, || ()).map_err(|refusal| ShadowError::Device {
+                object: "a depth pass",
+                refusal,
+            })?;
+        }
         // Nothing fails from here on.
         self.uniforms.commit(encoder, upload);
         self.report.passes = self

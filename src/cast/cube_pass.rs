@@ -26,6 +26,13 @@ pub(crate) struct PreparedCubePass {
     casters: Vec<u32>,
 }
 
+impl PreparedCubePass {
+    /// Was anything made on the device?
+    pub fn uploads(&self) -> bool {
+        self.upload.is_some()
+    }
+}
+
 impl CubePass {
     /// None where the device does not draw six views at once, or not rightly.
     pub fn new(device: &wgpu::Device, label: &str) -> Result<Option<Self>, ShadowError> {

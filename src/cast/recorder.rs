@@ -51,6 +51,13 @@ pub(crate) struct PreparedViews {
     cube: Option<PreparedCubePass>,
 }
 
+impl PreparedViews {
+    /// Was anything made on the device?
+    pub fn uploads(&self) -> bool {
+        self.upload.is_some() || self.cube.as_ref().is_some_and(PreparedCubePass::uploads)
+    }
+}
+
 impl CasterViewUniform {
     pub fn of(view: &ShadowView) -> Self {
         Self {

@@ -8,7 +8,7 @@ use wgpu_shadows::{
     DirectionalShadow, DirectionalShadowDescriptor, OmniFrame, OmniLight, OmniShadow,
     OmniShadowDescriptor, OmniShadowPool, PoolDescriptor, PoolFrame, PoolLight, ShadowBindings,
     ShadowBindingsDescriptor, ShadowCaster, ShadowError, SpotFrame, SpotLight, SpotShadow,
-    SpotShadowDescriptor, SpotShadowPool,
+    SpotShadowDescriptor, SpotShadowPool, ViewStatus,
 };
 
 use crate::support::gpu::{Gpu, GpuRequest};
@@ -244,9 +244,44 @@ fn a_lost_device_makes_nothing() {
     assert_eq!(error, Err(wanted));
     table::record(
         "a lost device",
-        "every constructor and every frame is a typed error, nothing is recorded, no panic",
+        "every constructor and every frame that draws is a typed error, nothing is recorded, no panic",
         "as expected, 9 constructors, 5 frames, 1 draw",
     );
+}
+
+/// A frame that draws with the uniforms of the one before uploads nothing, and is an error all the same; one that keeps its map
+/// asks nothing of the device.
+#[test]
+fn a_lost_device_draws_nothing() {
+    let lost = Gpu::new(GpuRequest::default());
+    let mesh = Mesh::cuboid(Vec3::splat(-0.2), Vec3::splat(0.2));
+    let mut caster = mesh.caster(&lost, &default_pipeline(&lost), Mat4::IDENTITY);
+    let mut sun = sun(&lost).expect("a sun");
+    let mut status = |caster: &dyn ShadowCaster| {
+        let frame = DirectionalFrame {
+            origin: DVec3::ZERO,
+            light: DirectionalLight::new(Vec3::NEG_Y),
+            coverage: Coverage::Bounds(COVER),
+            casters: &[caster],
+            receivers: &[],
+        };
+        let mut encoder = lost.encoder();
+        let report = sun.record(&lost.device, &mut encoder, &frame);
+        let status = report.map(|report| report.views[0].status);
+        lost.queue.submit([encoder.finish()]);
+        status
+    };
+    assert_eq!(status(&caster), Ok(ViewStatus::Drawn));
+    caster.geometry_changed(mesh.bounds());
+    assert_eq!(status(&caster), Ok(ViewStatus::Drawn));
+    lost.device.destroy();
+    assert_eq!(status(&caster), Ok(ViewStatus::Kept));
+    caster.geometry_changed(mesh.bounds());
+    let error = ShadowError::Device {
+        object: "a depth pass",
+        refusal: DeviceRefusal::Lost,
+    };
+    assert_eq!(status(&caster), Err(error));
 }
 
 /// A light of another device is refused in the device's own words, and the frame of a light is recorded on its own device only.
