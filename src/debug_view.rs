@@ -142,7 +142,8 @@ impl DebugView {
     /// Multiplies the picture in `pass` by a colour for the view of `source` that serves each pixel: red, green, blue, yellow,
     /// cyan, magenta, orange, violet for the first eight layers, grey where none does. `depth` is a single-sampled depth
     /// texture of the picture, of the viewport's shape, and `render_from_clip` the inverse of its camera's matrix; depths of 0
-    /// and 1 count as sky. Sets pipeline and bind group 0.
+    /// and 1 count as sky. The faces of a point light overlap by a filter's reach, and there the first is shown. Sets pipeline
+    /// and bind group 0.
     ///
     /// Where an engine can change its shader instead, `shadow_view_NAME(position)` says the same.
     ///

@@ -342,7 +342,8 @@ macro_rules! light_maps_getters {
     ($light:ty, $view:literal) => {
         impl $light {
             /// Says that the maps no longer hold what was recorded (an encoder was dropped, the texture was written by
-            /// others): the next frame draws every view.
+            /// others): the next frame draws every view, or of a pool under a budget as many as it allows, and the rest is lit
+            /// until its turn.
             pub fn invalidate(&mut self) {
                 self.maps.invalidate();
             }
@@ -362,7 +363,7 @@ macro_rules! light_maps_getters {
                 self.maps.view_uniforms()
             }
 
-            #[doc = concat!("The depth texture: `Depth32Float`, reversed, one layer per ", $view, ". A copy source on all backends but OpenGL.")]
+            #[doc = concat!("The depth texture, reversed: near 1, far 0; `Depth32Float`, or as a directional light's [`DepthFormat`](crate::DepthFormat) says. One layer per ", $view, ". A copy source on all backends but OpenGL.")]
             pub fn texture(&self) -> &wgpu::Texture {
                 self.maps.texture()
             }

@@ -82,7 +82,7 @@ pub struct PoolFrame<'a, L> {
     pub receivers: &'a [Aabb],
     /// Most views (of `map_size`² texels each) to draw in this frame; none for no limit. The most important lights are
     /// refreshed first, and at least one is; the others show their last map and are reported as deferred. A light that has
-    /// never been drawn is lit until its turn.
+    /// never been drawn, or not since `invalidate`, is lit until its turn.
     pub max_views: Option<u32>,
 }
 

@@ -23,7 +23,7 @@ pub enum ViewStatus {
 pub struct ViewReport {
     /// Layer of the depth texture.
     pub layer: u32,
-    /// Drawn, kept or empty.
+    /// What became of it.
     pub status: ViewStatus,
     /// Casters in the view: the draws of its pass, where there was one, and what was copied. In one pass with
     /// other faces, all that it draws.

@@ -18,7 +18,8 @@ const STEPS: f64 = (1 << 20) as f64;
 /// load time.
 ///
 /// Two things are for the engine to know. A light *inside* a solid sees back faces alone: culled, it shines out. And a
-/// surface that passes through itself in such a way that a part of it is inside out is taken for a solid.
+/// surface that passes through itself in such a way that a part of it is inside out is taken for a solid, and so is one with a
+/// smaller solid that is inside out and shares a corner with it.
 pub fn is_closed_solid(positions: &[Vec3], indices: &[u32]) -> bool {
     let Some(triangles) = welded(positions, indices) else {
         return false;

@@ -12,7 +12,8 @@ use crate::fit::window::MapWindow;
 /// What of its slice of the camera's view a cascade covers, and how finely.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SliceReport {
-    /// Depth along the view, in world units, at which the cascade's slice begins: the nearest visible receiver for the first.
+    /// Depth along the view, in world units, at which the cascade's slice begins: for the first the nearest visible receiver, or
+    /// the camera's near plane under [`Stability::Rotation`](crate::Stability::Rotation).
     pub depth_near: f32,
     /// Depth at which it ends.
     pub depth_far: f32,

@@ -14,8 +14,9 @@ pub enum Stability {
     #[default]
     Rungs,
     /// A sphere around each slice of the camera's own volume, receivers or none: the extent depends on the projection and the
-    /// distance limit alone, so that no motion of the camera changes it. A quarter as many texels fall on what is seen. Needs
-    /// a far plane or a `max_distance`.
+    /// distance limit alone, so that no motion of the camera changes it. (But texels are never finer than four ulps of the
+    /// largest render coordinate in the window, 1 mm at 2 km: far out, let `origin` follow the camera.) A quarter as many
+    /// texels fall on what is seen. Needs a far plane or a `max_distance`.
     Rotation,
 }
 
