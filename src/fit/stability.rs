@@ -38,6 +38,9 @@ pub(crate) struct PictureCorners {
     pub depth_far: f64,
 }
 
+/// The corners of a picture in ndc.
+const PICTURE: [(f64, f64); 4] = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
+
 impl PictureCorners {
     pub fn new(clip_from_view: &DMat4, forward_view: DVec3) -> Self {
         let view_from_clip = clip_from_view.inverse();
@@ -45,27 +48,33 @@ impl PictureCorners {
             let point = view_from_clip * DVec3::new(x, y, z).extend(1.0);
             (point.truncate(), point.w)
         };
-        let rays = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)].map(|(x, y)| {
-            let [first, second] = [0.25, 0.75].map(|z| {
-                let (point, w) = at(x, y, z);
-                point / w
-            });
-            let (depth_first, depth_second) = (forward_view.dot(first), forward_view.dot(second));
-            let per_depth = (second - first) / (depth_second - depth_first);
-            (first - per_depth * depth_first, per_depth)
+        let rays = PICTURE.map(|(x, y)| {
+            // Either of the two may lie at infinity.
+            let [(first, first_w), (second, second_w)] = [0.25, 0.75].map(|z| at(x, y, z));
+            let direction = second * first_w - first * second_w;
+            let per_depth = direction / forward_view.dot(direction);
+            let place = if first_w.abs() > second_w.abs() {
+                first / first_w
+            } else {
+                second / second_w
+            };
+            (place - per_depth * forward_view.dot(place), per_depth)
         });
-        let ends = [0.0, 1.0].map(|z| {
-            let (point, w) = at(0.0, 0.0, z);
-            if w.abs() <= 1e-12 * point.length() {
+        // A corner of the near or far plane; planes that lean have one nearer than their middle, and may lead beyond infinity.
+        let depth = |(x, y), z| {
+            let (point, w) = at(x, y, z);
+            if w <= 1e-12 * point.length() {
                 f64::INFINITY
             } else {
                 forward_view.dot(point / w)
             }
-        });
+        };
+        let depths = PICTURE.map(|corner| [depth(corner, 0.0), depth(corner, 1.0)]);
+        let depths = depths.iter().flatten().copied();
         Self {
             rays,
-            depth_near: ends[0].min(ends[1]),
-            depth_far: ends[0].max(ends[1]),
+            depth_near: depths.clone().fold(f64::INFINITY, f64::min),
+            depth_far: depths.fold(f64::NEG_INFINITY, f64::max),
         }
     }
 
@@ -151,6 +160,22 @@ mod tests {
         for depth in [1.0, 50.0] {
             let corner = DVec3::new(tangent * depth, 0.0, -depth);
             assert!((corner.distance(center) - radius).abs() < 1e-9);
+        }
+    }
+
+    /// A near plane that leans, as of a mirror's camera, begins at its nearest corner: x / 2 + depth = 3, at x = ±depth. With a
+    /// scale of one half the left corners' depths at z = 0.25 are infinite.
+    #[test]
+    fn a_leaning_near_plane_begins_at_its_nearest_corner() {
+        for scale in [0.25, 0.5] {
+            let mut rows = perspective(std::f64::consts::FRAC_PI_2, 1.0, 1.0, 9.0).transpose();
+            rows.z_axis = glam::DVec4::new(0.5, 0.0, -1.0, -3.0) * scale;
+            let corners = PictureCorners::new(&rows.transpose(), DVec3::NEG_Z);
+            assert!((corners.depth_near - 2.0).abs() < 1e-9, "{corners:?}");
+            assert_eq!(corners.depth_far, f64::INFINITY);
+            let (center, radius) = corners.sphere_in_view(2.0, 6.0);
+            assert!((center - DVec3::new(0.0, 0.0, -6.0)).length() < 1e-9);
+            assert!((radius - 72.0_f64.sqrt()).abs() < 1e-9, "{radius}");
         }
     }
 }
