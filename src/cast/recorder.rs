@@ -42,6 +42,8 @@ struct Layer {
     content: Content,
     /// A texture of one layer for the part that stands still; none before the first use.
     still_part: Option<DepthMap>,
+    /// The device had no room for one.
+    has_no_room: bool,
 }
 
 /// Everything that could fail, done before the encoder is touched.
@@ -106,6 +108,7 @@ impl Recorder {
             label: format!("{label} layer {layer}"),
             content: Content::default(),
             still_part: None,
+            has_no_room: false,
         });
         Ok(Self {
             uniforms,
@@ -277,10 +280,11 @@ impl Recorder {
 impl Layer {
     /// False where the device has no room for one: then all casters are drawn.
     fn make_still_part(&mut self, device: &wgpu::Device, map: &DepthMap) -> bool {
-        if self.still_part.is_none() {
+        if self.still_part.is_none() && !self.has_no_room {
             let label = format!("{} still part", self.label);
             self.still_part =
                 DepthMap::new(device, &label, "map_size", map.size(), 1, map.format()).ok();
+            self.has_no_room = self.still_part.is_none();
         }
         self.still_part.is_some()
     }

@@ -87,9 +87,9 @@ fn any_descriptor_is_taken_or_refused() {
     );
 }
 
-/// One light of every kind, and the question to all of them.
+/// One light of every kind, two kinds of sun among them, and the question to all of them.
 struct Lights {
-    sun: DirectionalShadow,
+    suns: [DirectionalShadow; 2],
     spot: SpotShadow,
     lamp: OmniShadow,
     spots: SpotShadowPool,
@@ -116,6 +116,19 @@ impl Lights {
                 ..Default::default()
             },
         );
+        let round = DirectionalShadow::new(
+            device,
+            &DirectionalShadowDescriptor {
+                map_size,
+                cascades: 3,
+                split: CascadeSplit::Explicit {
+                    ends: [2.0, 10.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+                },
+                blend: 0.2,
+                stability: Stability::Rotation,
+                ..Default::default()
+            },
+        );
         let spot = SpotShadow::new(
             device,
             &SpotShadowDescriptor {
@@ -130,19 +143,21 @@ impl Lights {
                 ..Default::default()
             },
         );
-        let (sun, spot, lamp) = (sun.expect("sun"), spot.expect("spot"), lamp.expect("lamp"));
+        let suns = [sun, round].map(|sun| sun.expect("sun"));
+        let (spot, lamp) = (spot.expect("spot"), lamp.expect("lamp"));
         let mut spots = SpotShadowPool::new(device, &pool).expect("a pool");
         let mut lamps = OmniShadowPool::new(device, &pool).expect("a pool");
         let slots = [spots.insert().expect("free"), lamps.insert().expect("free")];
         let asks = vec![
-            Ask::light(gpu, sun.source()),
+            Ask::light(gpu, suns[0].source()),
             Ask::light(gpu, spot.source()),
             Ask::light(gpu, lamp.source()),
             Ask::slot(gpu, spots.source(), slots[0].index()),
             Ask::slot(gpu, lamps.source(), slots[1].index()),
+            Ask::light(gpu, suns[1].source()),
         ];
         Self {
-            sun,
+            suns,
             spot,
             lamp,
             spots,
@@ -175,7 +190,7 @@ impl Lights {
             range: numbers.range,
         };
         let result = match kind {
-            0 => {
+            0 | 5 => {
                 let light = DirectionalLight {
                     direction: numbers.direction,
                     up: numbers.up,
@@ -188,7 +203,8 @@ impl Lights {
                     casters,
                     receivers: &receivers,
                 };
-                submitted(gpu, |encoder| self.sun.record(device, encoder, &frame))
+                let sun = &mut self.suns[usize::from(kind == 5)];
+                submitted(gpu, |encoder| sun.record(device, encoder, &frame))
             }
             1 => {
                 let frame = SpotFrame {
@@ -276,7 +292,7 @@ fn any_frame_is_taken_or_refused() {
             .iter()
             .map(|(position, normal)| Point::new(*position, *normal))
             .collect();
-        for kind in 0..5 {
+        for kind in 0..6 {
             let before = lights.ask(kind, &fixed);
             let result = lights.record(kind, &numbers, &[&slab]);
             counts.count(&result);
