@@ -54,6 +54,7 @@ fn main() -> ExitCode {
         repeats: arguments.repeats.max(1),
     };
     cpu::casters(&stage, arguments.casters);
+    cpu::culling(&stage, arguments.casters);
     cpu::lights(&stage);
     device::cascades(&stage);
     device::map_sizes(&stage, arguments.map_size);

@@ -1,7 +1,9 @@
 //! CPU time and allocations of `record`, and device time, against the number of casters and lights.
 
-use glam::Vec3;
-use wgpu_shadows::{Aabb, Coverage, Filter, OmniShadow};
+use glam::{DVec3, Vec3};
+use wgpu_shadows::{
+    Aabb, Coverage, Filter, OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor,
+};
 
 use super::counts::Counts;
 use super::crowd::{self, Crowd};
@@ -9,6 +11,7 @@ use super::lamps;
 use super::processor;
 use super::stage::{self, Stage};
 use super::table::Growth;
+use crate::support::camera;
 
 /// CPU time and allocations of a frame against the number of casters, all of them in the map.
 pub fn casters(stage: &Stage<'_>, most: u32) {
@@ -57,6 +60,72 @@ pub fn casters(stage: &Stage<'_>, most: u32) {
             .collect();
         figures.push(ratio.median);
         table.add(f64::from(count), figures);
+    }
+    table.print();
+}
+
+/// Fit and cull of four cascades before a camera that sees a corner of the crowd, and of a lamp in its middle.
+pub fn culling(stage: &Stage<'_>, most: u32) {
+    let mut table = Growth::new(
+        "`record` on the CPU against casters: four cascades out to 60 m, drawn and kept, and a lamp of 20 m, kept",
+        &[
+            "casters",
+            "drawn µs",
+            "casters in views",
+            "kept µs",
+            "kept allocs",
+            "lamp kept µs",
+            "lamp allocs",
+        ],
+    );
+    let sizes = (2..).map(|decade| 10u32.pow(decade));
+    for count in sizes.take_while(|&count| count <= most) {
+        let crowd = Crowd::new(stage.gpu, count);
+        let list = crowd.list();
+        let mut shadow = stage.sun(256, 4, Filter::default());
+        let camera = camera::looking(Vec3::new(0.0, 2.0, 0.0), Vec3::new(9.0, 1.0, 5.0), 0.9);
+        let frame = stage::frame(&list, Coverage::Camera(camera.with_max_distance(60.0)));
+        let drawn = stage.record_effort(&mut shadow, &frame, true);
+        let kept = stage.record_effort(&mut shadow, &frame, false);
+        let in_views: u32 = shadow.report().views.iter().map(|view| view.casters).sum();
+        let lamp_frame = OmniFrame {
+            origin: DVec3::ZERO,
+            light: OmniLight {
+                position_world: DVec3::new(0.0, 6.0, 0.0),
+                range: 20.0,
+            },
+            camera: None,
+            casters: &list,
+            receivers: &[],
+        };
+        let descriptor = OmniShadowDescriptor {
+            map_size: 64,
+            ..Default::default()
+        };
+        let mut lamp = OmniShadow::new(&stage.gpu.device, &descriptor).expect("a valid lamp");
+        let mut first = stage.gpu.encoder();
+        let recorded = lamp.record(&stage.gpu.device, &mut first, &lamp_frame);
+        recorded.expect("a valid frame");
+        stage.gpu.submit(first);
+        let lamp_kept = processor::measure(
+            stage.repeats,
+            || stage.gpu.encoder(),
+            |encoder| {
+                let recorded = lamp.record(&stage.gpu.device, encoder, &lamp_frame);
+                recorded.map(|report| report.passes).expect("a valid frame")
+            },
+        );
+        table.add(
+            f64::from(count),
+            [
+                drawn.microseconds,
+                f64::from(in_views),
+                kept.microseconds,
+                kept.allocations,
+                lamp_kept.microseconds,
+                lamp_kept.allocations,
+            ],
+        );
     }
     table.print();
 }
