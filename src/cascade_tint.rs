@@ -5,6 +5,7 @@ use glam::Mat4;
 
 use crate::cast::{capture_device_errors, filled_buffer};
 use crate::error::DeviceRefusal;
+use crate::fullscreen;
 use crate::receive::{Receiver, ShadowViewUniform};
 use crate::shader;
 
@@ -137,42 +138,26 @@ fn create_pipeline(
         label: Some("shadow cascade tint"),
         source: wgpu::ShaderSource::Wgsl(source.into()),
     });
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("shadow cascade tint"),
-        bind_group_layouts: &[Some(layout)],
-        immediate_size: 0,
-    });
     let multiply = wgpu::BlendComponent {
         src_factor: wgpu::BlendFactor::Dst,
         dst_factor: wgpu::BlendFactor::Zero,
         operation: wgpu::BlendOperation::Add,
     };
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("shadow cascade tint"),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("shadow_tint_vertex"),
-            compilation_options: Default::default(),
-            buffers: &[],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some("shadow_tint_fragment"),
-            compilation_options: Default::default(),
-            targets: &[Some(wgpu::ColorTargetState {
-                format,
-                blend: Some(wgpu::BlendState {
-                    color: multiply,
-                    alpha: multiply,
-                }),
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
+    let target = wgpu::ColorTargetState {
+        format,
+        blend: Some(wgpu::BlendState {
+            color: multiply,
+            alpha: multiply,
         }),
-        multiview_mask: None,
-        cache: None,
-    })
+        write_mask: wgpu::ColorWrites::ALL,
+    };
+    let entry = "shadow_tint_fragment";
+    fullscreen::pipeline(
+        device,
+        "shadow cascade tint",
+        layout,
+        &module,
+        entry,
+        target,
+    )
 }

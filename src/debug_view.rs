@@ -6,6 +6,7 @@ use glam::Mat4;
 use crate::cascade_tint::CascadeTint;
 use crate::cast::{capture_device_errors, filled_buffer};
 use crate::error::{DebugViewError, DeviceRefusal};
+use crate::fullscreen;
 use crate::receive::{Selection, ShadowSource, ShadowViewUniform};
 use crate::shader;
 
@@ -74,7 +75,10 @@ impl DebugView {
                 label: Some("shadow debug view"),
                 source: wgpu::ShaderSource::Wgsl(source.into()),
             });
-            let pipeline = |entry| create_pipeline(device, &layout, &module, entry, format);
+            let pipeline = |entry| {
+                let target = format.into();
+                fullscreen::pipeline(device, "shadow debug view", &layout, &module, entry, target)
+            };
             Self {
                 format,
                 layer: pipeline("shadow_debug_layer"),
@@ -235,40 +239,5 @@ fn create_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
                 count: None,
             },
         ],
-    })
-}
-
-fn create_pipeline(
-    device: &wgpu::Device,
-    layout: &wgpu::BindGroupLayout,
-    module: &wgpu::ShaderModule,
-    entry: &str,
-    format: wgpu::TextureFormat,
-) -> wgpu::RenderPipeline {
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("shadow debug view"),
-        bind_group_layouts: &[Some(layout)],
-        immediate_size: 0,
-    });
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("shadow debug view"),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some("shadow_debug_vertex"),
-            compilation_options: Default::default(),
-            buffers: &[],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module,
-            entry_point: Some(entry),
-            compilation_options: Default::default(),
-            targets: &[Some(format.into())],
-        }),
-        multiview_mask: None,
-        cache: None,
     })
 }

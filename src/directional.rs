@@ -33,6 +33,7 @@ pub struct DirectionalShadowDescriptor<'a> {
     pub bias: Bias,
     /// Share of a cascade's width, 0..=0.5, over which it gives way to the next toward its border. Default 0: a cascade ends
     /// where its map ends, and the edges of shadows widen there at once. A tenth hides that; inside it two maps are looked up.
+    /// Too large a share costs lookups and lets the coarser map blur what the finer one holds.
     pub blend: f32,
     /// What may change the extent of a cascade.
     pub stability: Stability,

@@ -53,6 +53,7 @@ mod debug_view;
 mod directional;
 mod error;
 mod fit;
+mod fullscreen;
 mod light_maps;
 mod local_lights;
 mod omni;

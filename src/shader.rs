@@ -39,10 +39,16 @@ pub(crate) const CASTER_BUILTIN_MULTIVIEW: ShaderModule = module!(
     "pass/caster_builtin_multiview.wgsl",
     ["caster_multiview"]
 );
-pub(crate) const DEBUG_VIEW: ShaderModule =
-    module!("debug_view", "pass/debug_view.wgsl", ["view", "cube_face"]);
-pub(crate) const CASCADE_TINT: ShaderModule =
-    module!("cascade_tint", "pass/cascade_tint.wgsl", ["view"]);
+pub(crate) const DEBUG_VIEW: ShaderModule = module!(
+    "debug_view",
+    "pass/debug_view.wgsl",
+    ["view", "cube_face", "fullscreen"]
+);
+pub(crate) const CASCADE_TINT: ShaderModule = module!(
+    "cascade_tint",
+    "pass/cascade_tint.wgsl",
+    ["view", "fullscreen"]
+);
 
 /// Every WGSL text of the library.
 pub const MODULES: &[ShaderModule] = &[
@@ -91,6 +97,7 @@ pub const MODULES: &[ShaderModule] = &[
     CASTER_BUILTIN,
     CASTER_MULTIVIEW,
     CASTER_BUILTIN_MULTIVIEW,
+    module!("fullscreen", "pass/fullscreen.wgsl", []),
     DEBUG_VIEW,
     CASCADE_TINT,
 ];

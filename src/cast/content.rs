@@ -53,16 +53,21 @@ struct Drawn {
     age: u32,
 }
 
-/// Casters count as still, and so does a view, after so many draws without change.
+/// Casters count as still, and so does a view, after so many draws without change: what is animated at a quarter of the frame
+/// rate or faster never does.
 const STILL_AFTER: u32 = 4;
 
 /// A still part pays where drawing it again would cost more than copying a layer. So many texels of copying come to a draw, and
 /// so many to a triangle. In software a draw of a box costs as much as copying 100 000 (`cargo bench --bench cost`, "still
 /// part"); a third of that leaves room for devices that draw faster beside their memory.
 const TEXELS_PER_DRAW: u64 = 32_768;
+
+/// By the memory that a texel of copying moves (8 bytes) against the corners, fetched and transformed, that a triangle needs
+/// (some 100 bytes where corners are shared); a software rasteriser takes far longer over triangles.
 const TEXELS_PER_TRIANGLE: u64 = 16;
 
-/// Longest time, in draws, for which no part is made after one that did not last.
+/// Longest time, in draws, for which no part is made after one that did not last: so long, one part in vain costs less than one
+/// draw in a hundred.
 const LONGEST_REST: u32 = 256;
 
 /// What a layer of the map holds.

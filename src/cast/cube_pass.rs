@@ -7,9 +7,9 @@ use crate::cast::content::ViewDraws;
 use crate::cast::cube_rule::one_pass_casters;
 use crate::cast::multiview::{FACE_COUNT, SIX_VIEWS, draws_six_views};
 use crate::cast::pipeline_build::six_views_layout;
-use crate::cast::recorder::{CasterViewUniform, VIEW_UNIFORM_BYTES};
+use crate::cast::recorder::{CasterViewUniform, VIEW_UNIFORM_BYTES, draw_casters};
 use crate::cast::upload::{PendingUpload, UploadBuffer};
-use crate::cast::{CasterPipeline, ShadowCaster, capture_device_errors};
+use crate::cast::{ShadowCaster, capture_device_errors};
 
 /// Uniforms of six views for one pass.
 #[derive(Debug)]
@@ -116,19 +116,10 @@ impl CubePass {
             multiview_mask: SIX_VIEWS,
         });
         pass.set_bind_group(0, &self.bind_group, &[]);
-        let mut current: Option<&CasterPipeline> = None;
-        for &index in &prepared.casters {
-            let caster = casters[index as usize];
-            let pipeline = caster.pipeline();
-            if current != Some(pipeline) {
-                let Some(six_views) = pipeline.six_views(device) else {
-                    continue;
-                };
-                pass.set_pipeline(six_views);
-                current = Some(pipeline);
-            }
-            caster.draw(&mut pass, &views[0].view);
-        }
+        let drawn = prepared.casters.iter().copied();
+        draw_casters(&mut pass, &views[0].view, drawn, casters, |pipeline| {
+            pipeline.six_views(device)
+        });
         for draws in views {
             draws.casters.clone_from(&prepared.casters);
         }

@@ -299,13 +299,13 @@ struct LayerPass<'a> {
 }
 
 impl LayerPass<'_> {
-    fn draw(
+    fn draw<'c>(
         &mut self,
         target: &wgpu::TextureView,
         load: wgpu::LoadOp<f32>,
         view: &ShadowView,
         drawn: impl Iterator<Item = u32>,
-        casters: &[&dyn ShadowCaster],
+        casters: &'c [&'c dyn ShadowCaster],
     ) {
         let mut pass = self.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(self.label),
@@ -317,20 +317,33 @@ impl LayerPass<'_> {
         });
         let (group, offset) = self.view_group;
         pass.set_bind_group(0, group, &[offset]);
-        let mut current: Option<&CasterPipeline> = None;
-        for index in drawn {
-            let caster = casters[index as usize];
-            let pipeline = caster.pipeline();
-            if current != Some(pipeline) {
-                // That there is one was checked when the frame was planned.
-                let Some(for_format) = pipeline.wgpu_pipeline(self.format) else {
-                    continue;
-                };
-                pass.set_pipeline(for_format);
-                current = Some(pipeline);
-            }
-            caster.draw(&mut pass, view);
+        // That there is a pipeline for the format was checked when the frame was planned.
+        let of_format = |pipeline: &'c CasterPipeline| pipeline.wgpu_pipeline(self.format);
+        draw_casters(&mut pass, view, drawn, casters, of_format);
+    }
+}
+
+/// Draws casters one after the other, and sets a pipeline only where it is another than before. `variant` is what of a caster's
+/// pipelines goes with the pass; without one the caster is left out.
+pub(crate) fn draw_casters<'c>(
+    pass: &mut wgpu::RenderPass<'_>,
+    view: &ShadowView,
+    drawn: impl Iterator<Item = u32>,
+    casters: &'c [&'c dyn ShadowCaster],
+    variant: impl Fn(&'c CasterPipeline) -> Option<&'c wgpu::RenderPipeline>,
+) {
+    let mut current: Option<&CasterPipeline> = None;
+    for index in drawn {
+        let caster = casters[index as usize];
+        let pipeline = caster.pipeline();
+        if current != Some(pipeline) {
+            let Some(variant) = variant(pipeline) else {
+                continue;
+            };
+            pass.set_pipeline(variant);
+            current = Some(pipeline);
         }
+        caster.draw(pass, view);
     }
 }
 

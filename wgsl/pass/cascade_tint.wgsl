@@ -1,6 +1,6 @@
 // A picture tinted by the view that serves each pixel: drawn over the engine's own, which it multiplies.
 //
-// Rust twin: src/cascade_tint.rs. Requires: view.
+// Rust twin: src/cascade_tint.rs. Requires: view, fullscreen.
 
 struct ShadowTint {
     // Render space from the clip space of the picture's camera.
@@ -12,21 +12,6 @@ struct ShadowTint {
 @group(0) @binding(1) var<uniform> shadow_tint_views: array<ShadowView, 8>;
 @group(0) @binding(2) var shadow_tint_depth: texture_depth_2d;
 @group(0) @binding(3) var shadow_tint_sampler: sampler;
-
-struct ShadowTintVertex {
-    @builtin(position) clip: vec4<f32>,
-    @location(0) uv: vec2<f32>,
-}
-
-// One triangle over the whole viewport; uv from the top left.
-@vertex
-fn shadow_tint_vertex(@builtin(vertex_index) index: u32) -> ShadowTintVertex {
-    let corner = vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 2.0;
-    var vertex: ShadowTintVertex;
-    vertex.clip = vec4<f32>(corner.x * 2.0 - 1.0, 1.0 - corner.y * 2.0, 0.0, 1.0);
-    vertex.uv = corner;
-    return vertex;
-}
 
 // Red, green, blue, yellow, cyan, magenta, orange, violet; grey where no view serves the place.
 fn shadow_tint_color(view: u32) -> vec3<f32> {
@@ -44,7 +29,7 @@ fn shadow_tint_color(view: u32) -> vec3<f32> {
 }
 
 @fragment
-fn shadow_tint_fragment(vertex: ShadowTintVertex) -> @location(0) vec4<f32> {
+fn shadow_tint_fragment(vertex: ShadowFullscreenVertex) -> @location(0) vec4<f32> {
     // A gather and not a load: GLSL cannot load from a depth texture. Its last component is the first texel.
     let size = vec2<f32>(textureDimensions(shadow_tint_depth));
     let texel = min(floor(vertex.uv * size), size - 1.0);

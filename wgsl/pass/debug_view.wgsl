@@ -1,6 +1,6 @@
 // Depth maps as grey levels: black at the light, white at the end of its reach and where nothing casts.
 //
-// Rust twin: src/debug_view.rs. Requires: view, cube_face.
+// Rust twin: src/debug_view.rs. Requires: view, cube_face, fullscreen.
 
 struct ShadowDebugView {
     // 1 where depth is near / distance (a local light), 0 where it is linear (a directional one).
@@ -11,21 +11,6 @@ struct ShadowDebugView {
 @group(0) @binding(1) var<uniform> shadow_debug_views: array<ShadowView, 6>;
 @group(0) @binding(2) var shadow_debug_map: texture_depth_2d_array;
 @group(0) @binding(3) var shadow_debug_sampler: sampler;
-
-struct ShadowDebugVertex {
-    @builtin(position) clip: vec4<f32>,
-    @location(0) uv: vec2<f32>,
-}
-
-// One triangle over the whole viewport; uv from the top left.
-@vertex
-fn shadow_debug_vertex(@builtin(vertex_index) index: u32) -> ShadowDebugVertex {
-    let corner = vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 2.0;
-    var vertex: ShadowDebugVertex;
-    vertex.clip = vec4<f32>(corner.x * 2.0 - 1.0, 1.0 - corner.y * 2.0, 0.0, 1.0);
-    vertex.uv = corner;
-    return vertex;
-}
 
 // Distance from the light as a share of its reach, for the ray through `texel`.
 fn shadow_debug_grey(view: ShadowView, texel: vec2<f32>, ray: vec3<f32>) -> f32 {
@@ -45,7 +30,7 @@ fn shadow_debug_grey(view: ShadowView, texel: vec2<f32>, ray: vec3<f32>) -> f32 
 
 // One view, the first of the list: the map as it lies in its layer.
 @fragment
-fn shadow_debug_layer(vertex: ShadowDebugVertex) -> @location(0) vec4<f32> {
+fn shadow_debug_layer(vertex: ShadowFullscreenVertex) -> @location(0) vec4<f32> {
     let view = shadow_debug_views[0];
     if view.inner.x > view.inner.z {
         return vec4<f32>(1.0);
@@ -63,7 +48,7 @@ fn shadow_debug_layer(vertex: ShadowDebugVertex) -> @location(0) vec4<f32> {
 
 // Six faces of a cube unfolded around the one that looks along -z: +y on top, -x left, +x right, +z outermost right, -y below.
 @fragment
-fn shadow_debug_cross(vertex: ShadowDebugVertex) -> @location(0) vec4<f32> {
+fn shadow_debug_cross(vertex: ShadowFullscreenVertex) -> @location(0) vec4<f32> {
     let cell = vec2<i32>(floor(vertex.uv * vec2<f32>(4.0, 3.0)));
     let within = fract(vertex.uv * vec2<f32>(4.0, 3.0)) * 2.0 - 1.0;
     let right = within.x;
