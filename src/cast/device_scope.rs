@@ -1,4 +1,8 @@
 //! Device errors as values: wgpu reports them to an error scope, or, where the device is lost, not at all.
+//!
+//! A browser's WebGPU answers an error scope later, in a promise. There is no error to return by then, and a scope that was
+//! closed without waiting would swallow it. So in a browser no scope is opened: errors go where the engine listens for them,
+//! to `Device::on_uncaptured_error` and `Device::set_device_lost_callback`.
 
 use std::future::Future;
 use std::pin::pin;
@@ -6,10 +10,8 @@ use std::task::{Context, Poll, Waker};
 
 use crate::DeviceRefusal;
 
-/// Runs `create` and tells whether the device made all of it.
-///
-/// Native backends answer at once. On the web the answer comes later: there the object is returned, and an error makes it an
-/// invalid object, as WebGPU has it.
+/// Runs `create` and returns what it made if the device made all of it. In a browser that is always so, and an object that
+/// could not be made is an invalid one, as WebGPU has it.
 pub(crate) fn capture_device_errors<T>(
     device: &wgpu::Device,
     create: impl FnOnce() -> T,
@@ -60,6 +62,9 @@ fn scoped<T>(
     device: &wgpu::Device,
     create: impl FnOnce() -> Option<T>,
 ) -> Result<T, DeviceRefusal> {
+    if answers_later(device) {
+        return create().ok_or(DeviceRefusal::Lost);
+    }
     let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
@@ -76,6 +81,12 @@ fn scoped<T>(
         (None, None) => Err(DeviceRefusal::Lost),
         (None, Some(made)) => Ok(made),
     }
+}
+
+/// Returns whether error scopes of the device are answered later than the call that closes them. WebGL in a browser is wgpu's
+/// own and answers at once.
+fn answers_later(device: &wgpu::Device) -> bool {
+    cfg!(target_family = "wasm") && device.adapter_info().backend == wgpu::Backend::BrowserWebGpu
 }
 
 fn poll_once<F: Future>(future: F) -> Option<F::Output> {
