@@ -4,7 +4,7 @@ use std::fmt::Display;
 
 use glam::DVec3;
 
-use crate::{Aabb, Bias, CascadeSplit, Filter, ShadowCaster, ShadowError};
+use crate::{Aabb, Bias, CascadeSplit, Filter, ShadowError};
 
 pub(crate) fn in_range(
     field: &'static str,
@@ -57,17 +57,6 @@ pub(crate) fn bounds(field: &'static str, index: usize, bounds: &Aabb) -> Result
         index,
         value: format!("{}..{}", bounds.min, bounds.max),
     })
-}
-
-/// Fills `list` with the casters' bounds, once per frame.
-pub(crate) fn caster_bounds(
-    field: &'static str,
-    casters: &[&dyn ShadowCaster],
-    list: &mut Vec<Aabb>,
-) -> Result<(), ShadowError> {
-    list.clear();
-    list.extend(casters.iter().map(|caster| caster.bounds()));
-    receiver_bounds(field, list)
 }
 
 pub(crate) fn receiver_bounds(field: &'static str, list: &[Aabb]) -> Result<(), ShadowError> {

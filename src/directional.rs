@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::cast::{ShadowCaster, ViewDraws};
+use crate::cast::{CasterAnswers, FrameCasters, ShadowCaster, ViewDraws};
 use crate::check;
 use crate::fit::{
     CameraFrustum, Column, DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes,
@@ -133,7 +133,7 @@ pub struct DirectionalShadow {
     maps: LightMaps,
     limits: FitLimits,
     fit: DirectionalFit,
-    bounds: Vec<Aabb>,
+    answers: CasterAnswers,
     scratch: FitScratch,
 }
 
@@ -200,15 +200,15 @@ impl DirectionalShadow {
                 stability: descriptor.stability,
             },
             fit: DirectionalFit::default(),
-            bounds: Vec::new(),
+            answers: CasterAnswers::default(),
             scratch: FitScratch::default(),
         })
     }
 
     /// Fits the cascades to the frame, culls, writes the uniforms and records the depth passes that are needed.
     ///
-    /// The encoder must be submitted before anything that asks for these shadows. One that is thrown away takes its depth
-    /// passes with it: then call [`DirectionalShadow::invalidate`].
+    /// The encoder must be submitted before anything that asks for these shadows, and encoders in the order in which they were
+    /// recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)).
     ///
     /// # Errors
     /// [`ShadowError`] for input that is not finite or not a camera, light or box. Nothing is recorded then, and the last good
@@ -231,28 +231,29 @@ impl DirectionalShadow {
                 Region::Camera(&frustum)
             }
         };
-        check::caster_bounds("DirectionalFrame::casters", frame.casters, &mut self.bounds)?;
+        let mut answers = std::mem::take(&mut self.answers);
+        let casters = answers.ask("DirectionalFrame::casters", frame.casters)?;
         check::receiver_bounds("DirectionalFrame::receivers", frame.receivers)?;
         let input = FitInput {
             axes,
             origin: frame.origin,
             region,
-            casters: &self.bounds,
+            casters: casters.bounds,
             receivers: frame.receivers,
         };
         let fit = self.fit.fit(&input, &self.limits, &mut self.scratch);
-        let views = self.cull(&fit, &axes, frame.origin)?;
+        let views = self.cull(&fit, &axes, frame.origin, &casters)?;
         let layers: [_; MAX_CASCADES] =
             std::array::from_fn(|layer| LayerBase::directional(layer as u32, fit.slices[layer]));
         let maps_frame = MapsFrame {
             views,
             layers: &layers[..self.limits.cascades],
             viewer_render: None,
-            casters: frame.casters,
-            casters_field: "DirectionalFrame::casters",
+            casters,
         };
         let report = self.maps.record(device, encoder, maps_frame)?;
         self.fit = fit;
+        self.answers = answers;
         Ok(report)
     }
 
@@ -279,22 +280,23 @@ impl DirectionalShadow {
         fit: &DirectionalFit,
         axes: &LightAxes,
         origin: DVec3,
+        casters: &FrameCasters<'_>,
     ) -> Result<Vec<ViewDraws>, ShadowError> {
         let windows = &fit.windows[..self.limits.cascades];
         let mut views = self.maps.spare_views();
         for (layer, window) in windows.iter().enumerate() {
             let Some(window) = window else { continue };
             let column = Column::new(axes, origin, &window.plane);
-            let mut casters = self.maps.spare_list();
-            let all = (0u32..).zip(self.scratch.casters.iter().zip(&self.bounds));
-            casters.extend(all.filter_map(|(index, (caster, bounds))| {
+            let mut drawn = self.maps.spare_list();
+            let all = (0u32..).zip(self.scratch.casters.iter().zip(casters.bounds));
+            drawn.extend(all.filter_map(|(index, (caster, bounds))| {
                 let marks = caster.can_shadow
                     && window.holds_part_of(&caster.light)
                     && column.meets(bounds);
                 marks.then_some(index)
             }));
             let view = ShadowView::orthographic(axes, window, origin, layer as u32).checked()?;
-            views.push(ViewDraws::new(view, casters));
+            views.push(ViewDraws::new(view, drawn));
         }
         Ok(views)
     }

@@ -5,6 +5,12 @@ use thiserror::Error;
 use crate::DepthFormat;
 
 /// Why a device did not make what it was asked for. Part of every error of the crate that a device can cause.
+///
+/// A browser's WebGPU tells of errors only after the call that caused them. There nothing of this kind is returned: constructors
+/// and frames succeed, what the browser refused is an invalid object, and its words arrive at the engine's
+/// `wgpu::Device::on_uncaptured_error`. Loss of the device arrives at `wgpu::Device::set_device_lost_callback`. Set both, or
+/// the only sign of a shader that does not compile is a black picture. (WebGL in a browser answers at once, like native
+/// backends.)
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum DeviceRefusal {
@@ -108,6 +114,14 @@ pub enum ShadowError {
         /// The map's format.
         format: DepthFormat,
     },
+    /// A caster whose pipeline was made on another device than the light's maps are on.
+    #[error("{field}[{index}]: its CasterPipeline must be made on the device of the light")]
+    CasterDevice {
+        /// Path of the list.
+        field: &'static str,
+        /// Position in the list.
+        index: usize,
+    },
     /// A slot that was given back, or that belongs to another pool.
     #[error(
         "{field} must be a slot that this pool has given out and not taken back, got slot {index}"
@@ -189,6 +203,40 @@ pub enum CasterError {
     Topology {
         /// The topology asked for.
         topology: wgpu::PrimitiveTopology,
+    },
+    /// More of a resource than the device was created with.
+    #[error("{field} need {needed} of the device's {limit} = {maximum}")]
+    OverDeviceLimit {
+        /// Path of the field.
+        field: &'static str,
+        /// Name of the limit in `wgpu::Limits`.
+        limit: &'static str,
+        /// The device's value of it.
+        maximum: u32,
+        /// What the field needs.
+        needed: usize,
+    },
+    /// An object of another device than the one that is made use of.
+    #[error("{field} must have been made on the device that is passed")]
+    OtherDevice {
+        /// Path of the field.
+        field: &'static str,
+    },
+    /// A buffer that the device cannot use: most often one of another device, or one whose creation failed.
+    #[error("{field} cannot be used on the device: {refusal}")]
+    Buffer {
+        /// Path of the field.
+        field: &'static str,
+        /// Why the device cannot use it.
+        refusal: DeviceRefusal,
+    },
+    /// A pipeline with the engine's own vertex stage that reads what a ready-made mesh does not set.
+    #[error(
+        "MeshCasterDescriptor::pipeline must take no more than vertex buffer 0 and no bind group of its own, got one that takes {needs}"
+    )]
+    MeshPipeline {
+        /// What else the pipeline takes.
+        needs: String,
     },
     /// The device is lost, out of memory, or refused an object: a pipeline most often for the engine's own WGSL.
     #[error("the device did not make {object}: {refusal}")]

@@ -16,7 +16,25 @@
 //! ```
 //!
 //! Everything is recorded into your encoder, in order: uniforms first, then depth passes. The encoder must be submitted before
-//! what asks for the shadows; one that is dropped takes its passes with it, and then the light's `invalidate` must be called.
+//! what asks for the shadows. Several frames may be recorded before one submission: each shows its own state.
+//!
+//! # What a kept map relies on
+//!
+//! A view whose light, fit and casters did not change keeps its map. A light knows what it has recorded, not what the device
+//! has done with it, so a kept map is stale where
+//!
+//! - an encoder was dropped, or its `finish` failed because some command in it was invalid, a caster's own commands included;
+//! - encoders were submitted in another order than they were recorded in;
+//! - the encoder belongs to another device than the light (wgpu tells of it only when the encoder is finished);
+//! - something else wrote to the texture or the uniform buffer;
+//! - a caster's [`Revision`] stood still while what it draws changed.
+//!
+//! After any but the last, call the light's `invalidate`: the next frame then draws everything. A caster that panics while it
+//! draws needs no call; the layer that it was drawn into is drawn anew by itself.
+//!
+//! The engine's `origin` may move without a new revision. A kept map then carries the rounding of the render coordinates that
+//! it was drawn from; the bias allows for it, and the map is drawn anew where a new one would be more than twice as fine and
+//! the difference comes to more than 1/64 of a texel.
 //!
 //! What may be expected of scenes and inputs that break shadow maps, and what was measured of each: [`hard_cases`].
 //!

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use crate::cast::{
-    DepthMap, Plan, Recorder, ShadowCaster, UploadBuffer, ViewDraws, capture_device_errors,
+    DepthMap, FrameCasters, Plan, Recorder, UploadBuffer, ViewDraws, capture_device_errors,
 };
 use crate::receive::{
     Receiver, Sampling, Selection, ShadowSource, ShadowViewUniform, empty_view_uniform,
@@ -85,9 +85,7 @@ pub(crate) struct MapsFrame<'a> {
     pub views: Vec<ViewDraws>,
     /// The camera, if there is one.
     pub viewer_render: Option<Vec3>,
-    pub casters: &'a [&'a dyn ShadowCaster],
-    /// Path of the casters in the caller's frame.
-    pub casters_field: &'static str,
+    pub casters: FrameCasters<'a>,
 }
 
 impl LightMaps {
@@ -214,18 +212,17 @@ impl LightMaps {
             mut views,
             viewer_render,
             casters,
-            casters_field,
         } = frame;
         if *device != self.device {
             return Err(ShadowError::OtherDevice);
         }
+        let prepared = self
+            .recorder
+            .prepare(device, &self.map, &mut views, &casters)?;
         let uniform_values = self.uniforms_of(layers, &views, viewer_render);
         let upload = self
             .uniforms
             .prepare(device, bytemuck::cast_slice(&uniform_values))?;
-        let prepared =
-            self.recorder
-                .prepare(device, &self.map, &mut views, casters, casters_field)?;
         let draws = views.iter().any(|draws| draws.plan != Plan::Keep);
         if draws && upload.is_none() && !prepared.uploads() {
             // Nothing was made on the device, which so had no occasion to say that it is lost.
@@ -236,15 +233,15 @@ impl LightMaps {
         }
         // Nothing fails from here on.
         self.uniforms.commit(encoder, upload);
+        self.memory.uniforms = std::mem::replace(&mut self.uniform_values, uniform_values);
         self.report.passes = self
             .recorder
-            .record(device, encoder, &self.map, prepared, &mut views, casters);
-        self.memory.uniforms = std::mem::replace(&mut self.uniform_values, uniform_values);
+            .record(encoder, &self.map, prepared, &mut views, &casters);
         let mut old_views = std::mem::replace(&mut self.views, views);
         let lists = old_views.drain(..).map(|draws| draws.casters);
         self.memory.casters.extend(lists);
         self.memory.views = old_views;
-        self.fill_report(layers, casters);
+        self.fill_report(layers, &casters);
         Ok(&self.report)
     }
 
@@ -275,7 +272,7 @@ impl LightMaps {
         uniforms
     }
 
-    fn fill_report(&mut self, layers: &[LayerBase], casters: &[&dyn ShadowCaster]) {
+    fn fill_report(&mut self, layers: &[LayerBase], casters: &FrameCasters<'_>) {
         let caster_count = casters.len() as u32;
         let mut views = self.views.iter().peekable();
         let reports = layers.iter().map(|base| {
@@ -296,9 +293,9 @@ impl LightMaps {
         self.report.views.extend(reports);
     }
 
-    /// Would `draws` need a pass?
-    pub fn needs(&self, draws: &ViewDraws, casters: &[&dyn ShadowCaster]) -> bool {
-        self.recorder.needs(draws, casters)
+    /// Returns how many depth passes `draws` needs.
+    pub fn passes(&self, draws: &ViewDraws, casters: &FrameCasters<'_>) -> u32 {
+        self.recorder.passes(draws, casters)
     }
 
     /// Does the layer of `view` hold what was last drawn for it?
@@ -307,18 +304,14 @@ impl LightMaps {
     }
 }
 
-fn view_report(
-    draws: &ViewDraws,
-    sampling: &Sampling,
-    casters: &[&dyn ShadowCaster],
-) -> ViewReport {
+fn view_report(draws: &ViewDraws, sampling: &Sampling, casters: &FrameCasters<'_>) -> ViewReport {
     let triangles: u64 = draws
         .casters
         .iter()
-        .map(|&index| u64::from(casters[index as usize].triangles()))
+        .map(|&index| u64::from(casters.facts(index).triangles))
         .sum();
     ViewReport {
-        triangles: triangles - draws.copied_triangles,
+        triangles: triangles.saturating_sub(draws.copied_triangles),
         layer: draws.view.layer(),
         status: match draws {
             ViewDraws { deferred: true, .. } => ViewStatus::Deferred,
@@ -341,9 +334,9 @@ fn view_report(
 macro_rules! light_maps_getters {
     ($light:ty, $view:literal) => {
         impl $light {
-            /// Says that the maps no longer hold what was recorded (an encoder was dropped, the texture was written by
-            /// others): the next frame draws every view, or of a pool under a budget as many as it allows, and the rest is lit
-            /// until its turn.
+            /// Says that the maps no longer hold what was recorded ([what a kept map relies
+            /// on](crate#what-a-kept-map-relies-on)): the next frame draws every view, or of a pool under a budget as many as it
+            /// allows, and the rest is lit until its turn.
             pub fn invalidate(&mut self) {
                 self.maps.invalidate();
             }
@@ -353,7 +346,8 @@ macro_rules! light_maps_getters {
                 self.maps.source()
             }
 
-            /// The views of the last frame in the order of layers; those that nothing casts into are left out.
+            /// Returns the views of the last frame, in the order of the frame's lights and of the layers of each; those that
+            /// nothing casts into are left out. [`ShadowView::layer`](crate::ShadowView::layer) tells which layer each is in.
             pub fn views(&self) -> impl ExactSizeIterator<Item = &crate::ShadowView> {
                 self.maps.views()
             }

@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use crate::cast::{ShadowCaster, ViewDraws};
+use crate::cast::{CasterAnswers, FrameCasters, ShadowCaster, ViewDraws};
 use crate::check;
 use crate::fit::{CameraFrustum, LightAxes, LocalFit, LocalInput, MAX_LOCAL_VIEWS, Reached};
 use crate::light_maps::{LayerBase, LightMaps, MapsFrame};
@@ -13,7 +13,7 @@ use crate::{Aabb, CameraView, ShadowError, ShadowReport, ShadowView};
 #[derive(Debug)]
 pub(crate) struct LocalLights {
     slots: Vec<SlotState>,
-    bounds: Vec<Aabb>,
+    answers: CasterAnswers,
     /// Empty between frames; kept for their memory.
     candidates: Vec<Candidate>,
     layers: Vec<LayerBase>,
@@ -78,7 +78,7 @@ struct Candidate {
     draws: [Option<ViewDraws>; MAX_LOCAL_VIEWS],
     /// The views of `draws`.
     views: [Option<ShadowView>; MAX_LOCAL_VIEWS],
-    /// Views that need a pass.
+    /// Depth passes that its views need.
     needed: u32,
     refreshed: bool,
 }
@@ -88,7 +88,7 @@ impl LocalLights {
     pub fn new(capacity: u32) -> Self {
         Self {
             slots: vec![SlotState::default(); capacity as usize],
-            bounds: Vec::new(),
+            answers: CasterAnswers::default(),
             candidates: Vec::new(),
             layers: Vec::new(),
             reached: Reached::default(),
@@ -119,13 +119,14 @@ impl LocalLights {
             .camera
             .map(|camera| camera.frustum(view_field, clip_field, distance_field))
             .transpose()?;
-        check::caster_bounds(fields.casters, frame.casters, &mut self.bounds)?;
+        let mut answers = std::mem::take(&mut self.answers);
+        let casters = answers.ask(fields.casters, frame.casters)?;
         check::receiver_bounds(fields.receivers, frame.receivers)?;
 
         let mut candidates = std::mem::take(&mut self.candidates);
         candidates.clear();
         for light in frame.lights {
-            candidates.push(self.candidate(maps, frame, light, camera.as_ref())?);
+            candidates.push(self.candidate(maps, frame, light, camera.as_ref(), &casters)?);
         }
         self.choose(frame, &mut candidates);
 
@@ -167,10 +168,10 @@ impl LocalLights {
             layers: &layers,
             views,
             viewer_render: camera.as_ref().map(CameraFrustum::eye_render),
-            casters: frame.casters,
-            casters_field: fields.casters,
+            casters,
         };
         let report = maps.record(device, encoder, maps_frame)?;
+        self.answers = answers;
         self.layers = layers;
         for (light, candidate) in frame.lights.iter().zip(candidates.drain(..)) {
             let state = &mut self.slots[light.slot as usize];
@@ -197,6 +198,7 @@ impl LocalLights {
         frame: &LocalFrame<'_>,
         light: &LocalPlacement,
         camera: Option<&CameraFrustum>,
+        casters: &FrameCasters<'_>,
     ) -> Result<Candidate, ShadowError> {
         let axes = &light.axes[..light.view_count as usize];
         let input = LocalInput {
@@ -209,7 +211,7 @@ impl LocalLights {
                 * border(maps.map_size(), maps.sampling().border_texels()),
             looks_around: maps.sampling().filter.directions().is_some(),
             camera,
-            casters: &self.bounds,
+            casters: casters.bounds,
             receivers: frame.receivers,
             map_size: maps.map_size(),
             margin_texels: maps.sampling().margin_texels(),
@@ -220,9 +222,9 @@ impl LocalLights {
         let mut draws = [const { None }; MAX_LOCAL_VIEWS];
         let mut views = [None; MAX_LOCAL_VIEWS];
         let mut needed = 0;
-        for (index, casters) in drawn.into_iter().enumerate() {
+        for (index, drawn) in drawn.into_iter().enumerate() {
             let (Some(axes), Some(window)) = (axes.get(index), &fit.windows[index]) else {
-                maps.return_list(casters);
+                maps.return_list(drawn);
                 continue;
             };
             let view = ShadowView::perspective(
@@ -235,8 +237,8 @@ impl LocalLights {
                 light.slot * light.view_count + index as u32,
             );
             let view = view.checked()?;
-            let view_draws = ViewDraws::new(view, casters);
-            needed += u32::from(maps.needs(&view_draws, frame.casters));
+            let view_draws = ViewDraws::new(view, drawn);
+            needed += maps.passes(&view_draws, casters);
             draws[index] = Some(view_draws);
             views[index] = Some(view);
         }

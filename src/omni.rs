@@ -131,8 +131,8 @@ impl OmniShadow {
     /// Fits the faces to the frame, culls, writes the uniforms and records the depth passes that are needed: a face into which
     /// nothing casts, or on which no visible receiver lies, is neither drawn nor cleared.
     ///
-    /// The encoder must be submitted before anything that asks for these shadows. One that is thrown away takes its depth
-    /// passes with it: then call [`OmniShadow::invalidate`].
+    /// The encoder must be submitted before anything that asks for these shadows, and encoders in the order in which they were
+    /// recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)).
     ///
     /// # Errors
     /// [`ShadowError`] for input that is not finite, or a range that is not above 0. Nothing is recorded then, and the last

@@ -80,9 +80,10 @@ pub struct PoolFrame<'a, L> {
     pub casters: &'a [&'a dyn ShadowCaster],
     /// Bounds in render space of surfaces that only receive.
     pub receivers: &'a [Aabb],
-    /// Most views (of `map_size`² texels each) to draw in this frame; none for no limit. The most important lights are
-    /// refreshed first, and at least one is; the others show their last map and are reported as deferred. A light that has
-    /// never been drawn, or not since `invalidate`, is lit until its turn.
+    /// Most depth passes (over `map_size`² texels each) to draw in this frame; none for no limit. A view is one pass, or two
+    /// where the layer that is kept of what stands still is drawn anew. The most important lights are refreshed first, and at
+    /// least one is, whatever it takes; the others show their last map and are reported as deferred. A light that has never
+    /// been drawn, or not since `invalidate`, is lit until its turn.
     pub max_views: Option<u32>,
 }
 
@@ -271,8 +272,8 @@ macro_rules! pool {
             /// Fits the lights to the frame, culls, writes the uniforms and records the depth passes that are needed and that
             /// the budget allows. A light in which nothing changed costs no pass.
             ///
-            /// The encoder must be submitted before anything that asks for these shadows. One that is thrown away takes its
-            /// depth passes with it: then call `invalidate`.
+            /// The encoder must be submitted before anything that asks for these shadows, and encoders in the order in which
+            /// they were recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)).
             ///
             /// # Errors
             /// [`ShadowError`] for lights, bounds or a camera that are not sound, or slots that are not this pool's. Nothing

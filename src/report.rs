@@ -67,7 +67,7 @@ impl ViewReport {
 /// What a light did in a frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShadowReport {
-    /// One entry per view, in the order of layers.
+    /// One entry per view, in the order of the frame's lights and of the layers of each.
     pub views: Vec<ViewReport>,
     /// Depth passes recorded: one per drawn view, two where what stands still was drawn into a layer of its own first; a single
     /// one for all faces of a point light where that is cheaper ([`OmniShadow`](crate::OmniShadow) tells when).
@@ -79,17 +79,21 @@ pub struct ShadowReport {
 impl ShadowReport {
     /// Casters drawn: once for each view that was drawn, or once in all where six faces were drawn in one pass.
     pub fn draws(&self) -> u32 {
-        let draws = self.drawn().map(|view| view.casters - view.copied);
+        let draws = self
+            .drawn()
+            .map(|view| view.casters.saturating_sub(view.copied));
         if self.passes == 1 {
             draws.max().unwrap_or(0)
         } else {
-            draws.sum()
+            draws.fold(0, u32::saturating_add)
         }
     }
 
     /// Triangles drawn, summed over the views that were drawn, as far as casters tell.
     pub fn triangles(&self) -> u64 {
-        self.drawn().map(|view| view.triangles).sum()
+        self.drawn()
+            .map(|view| view.triangles)
+            .fold(0, u64::saturating_add)
     }
 
     fn drawn(&self) -> impl Iterator<Item = &ViewReport> {

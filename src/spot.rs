@@ -122,8 +122,8 @@ impl SpotShadow {
 
     /// Fits the view to the frame, culls, writes the uniforms and records the depth pass if it is needed.
     ///
-    /// The encoder must be submitted before anything that asks for these shadows. One that is thrown away takes its depth pass
-    /// with it: then call [`SpotShadow::invalidate`].
+    /// The encoder must be submitted before anything that asks for these shadows, and encoders in the order in which they were
+    /// recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)).
     ///
     /// # Errors
     /// [`ShadowError`] for input that is not finite, or an angle or range out of its limits. Nothing is recorded then, and the

@@ -30,7 +30,7 @@ impl Revision {
         Self(Some((Origin::Engine, id, version)))
     }
 
-    /// Of a ready-made mesh.
+    /// Returns the revision of a [`MeshCaster`](crate::MeshCaster).
     pub(crate) const fn of_mesh(id: u64, version: u64) -> Self {
         Self(Some((Origin::Mesh, id, version)))
     }
@@ -42,6 +42,10 @@ impl Revision {
 }
 
 /// Something that casts shadows.
+///
+/// In a frame of a light, [`bounds`](ShadowCaster::bounds), [`triangles`](ShadowCaster::triangles),
+/// [`revision`](ShadowCaster::revision) and the two questions about [`draw`](ShadowCaster::draw) are asked once; `draw` is called
+/// once for each pass that the caster takes part in.
 pub trait ShadowCaster {
     /// Bounds in render space of everything that [`ShadowCaster::draw`] may draw, displacement included. Used to fit and to
     /// cull. Geometry outside its bounds loses its shadow at times; empty bounds cast nothing.
@@ -53,11 +57,26 @@ pub trait ShadowCaster {
     /// Sets vertex and index buffers and draws. Pipeline and bind group 0 are set already; groups 1 and up are the caster's.
     /// `view` is the depth render being recorded, for engines that choose a level of detail by texel size; where
     /// six faces are drawn at once, it is one of them.
+    ///
+    /// What else it changes of the pass (viewport, scissor rectangle, pipeline, bind group 0) is restored before the next
+    /// caster. It must close the debug groups that it opens, and its commands must be valid: wgpu tells of one that is not only
+    /// when the encoder is finished, and the encoder is then lost with all passes in it. Call the light's `invalidate` in that
+    /// case, since the light counts its maps as drawn.
+    ///
+    /// A panic in here leaves the layer that was being drawn without its shadows until the next frame, which draws it anew.
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &ShadowView);
 
-    /// True where [`ShadowCaster::draw`] makes the same calls whatever `view` it is given: a point light may then draw it into
-    /// all six faces at once ([`OmniShadow`](crate::OmniShadow) tells when). The default says false, which always gives a right
-    /// picture. A caster that chooses by `view` and yet says true is drawn as it chose for one of the faces.
+    /// Returns whether [`ShadowCaster::draw`] sets nothing of the pass but vertex and index buffers and bind groups 1 and up.
+    /// Nothing then needs to be restored before the next caster, which saves four calls. The default returns false, which is
+    /// always right. A caster that returns true and yet sets a viewport or scissor rectangle cuts off the shadows of the
+    /// casters after it.
+    fn keeps_pass_state(&self) -> bool {
+        false
+    }
+
+    /// Returns whether [`ShadowCaster::draw`] makes the same calls whatever `view` it is given: a point light may then draw it
+    /// into all six faces at once ([`OmniShadow`](crate::OmniShadow) tells when). The default returns false, which always gives
+    /// a right picture. A caster that chooses by `view` and yet returns true is drawn as it chose for one of the faces.
     fn same_in_every_view(&self) -> bool {
         false
     }

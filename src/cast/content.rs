@@ -1,7 +1,7 @@
 //! What a layer of a map holds, what part of it stands still, and so what a frame must draw.
 
 use crate::ShadowView;
-use crate::cast::{Revision, ShadowCaster};
+use crate::cast::{FrameCasters, Revision};
 use crate::fit::ViewPlacement;
 
 /// One view of this frame and the casters that it needs, by index into the engine's list, ascending.
@@ -44,6 +44,17 @@ pub(crate) enum Plan {
     RenewStill,
 }
 
+impl Plan {
+    /// Returns how many depth passes it takes.
+    pub const fn passes(self) -> u32 {
+        match self {
+            Self::Keep => 0,
+            Self::All | Self::OverStill => 1,
+            Self::RenewStill => 2,
+        }
+    }
+}
+
 /// A caster as it was drawn.
 #[derive(Clone, Copy, Debug)]
 struct Drawn {
@@ -75,6 +86,8 @@ const LONGEST_REST: u32 = 256;
 pub(crate) struct Content {
     /// None before the first pass.
     placement: Option<ViewPlacement>,
+    /// Largest render coordinate that the depths were computed from: they carry its rounding, whatever the origin is by now.
+    render_reach: f64,
     /// Draws since the view last changed.
     age: u32,
     drawn: Vec<Drawn>,
@@ -86,6 +99,8 @@ pub(crate) struct Content {
 struct StillPart {
     /// Nothing while it is of no use.
     casters: Vec<Drawn>,
+    /// Largest render coordinate that its depths were computed from.
+    render_reach: f64,
     /// Draws that it has served.
     served: u32,
     /// Draws until one may be made again, and for how long the last pause was.
@@ -99,9 +114,10 @@ impl Content {
         self.placement == Some(*view.placement())
     }
 
-    /// Is it what `draws` would put there?
-    pub fn holds(&self, draws: &ViewDraws, casters: &[&dyn ShadowCaster]) -> bool {
+    /// Returns whether it is as good as what `draws` would put there.
+    fn holds(&self, draws: &ViewDraws, casters: &FrameCasters<'_>) -> bool {
         self.is_of(&draws.view)
+            && draws.view.may_keep_depths_from(self.render_reach)
             && self.drawn.len() == draws.casters.len()
             && now(draws, casters)
                 .zip(&self.drawn)
@@ -109,7 +125,7 @@ impl Content {
     }
 
     /// What `draws` needs. `can_copy` is false where layers cannot be copied.
-    pub fn plan(&self, draws: &ViewDraws, casters: &[&dyn ShadowCaster], can_copy: bool) -> Plan {
+    pub fn plan(&self, draws: &ViewDraws, casters: &FrameCasters<'_>, can_copy: bool) -> Plan {
         if draws.deferred || self.holds(draws, casters) {
             return Plan::Keep;
         }
@@ -133,14 +149,26 @@ impl Content {
         }
     }
 
+    /// Returns the largest render coordinate that the layer's depths will have been computed from once `draws` has been carried
+    /// out as planned.
+    pub fn render_reach_after(&self, draws: &ViewDraws) -> f64 {
+        let now = draws.view.render_reach();
+        match draws.plan {
+            Plan::Keep => self.render_reach,
+            Plan::OverStill => self.part.render_reach.max(now),
+            Plan::All | Plan::RenewStill => now,
+        }
+    }
+
     /// Does the still part hold the caster?
     pub fn is_still(&self, index: u32) -> bool {
         let casters = &self.part.casters;
         casters.binary_search_by_key(&index, |c| c.index).is_ok()
     }
 
-    /// Takes on what `draws` will put there.
-    pub fn replace(&mut self, draws: &ViewDraws, casters: &[&dyn ShadowCaster]) {
+    /// Takes on what `draws` puts there.
+    pub fn replace(&mut self, draws: &ViewDraws, casters: &FrameCasters<'_>) {
+        self.render_reach = self.render_reach_after(draws);
         let placement = Some(*draws.view.placement());
         if self.placement != placement {
             self.placement = placement;
@@ -158,6 +186,7 @@ impl Content {
                 part.clear();
                 part.extend(self.still(draws, casters));
                 self.part.casters = part;
+                self.part.render_reach = self.render_reach;
                 self.part.served = 0;
             }
         }
@@ -179,7 +208,7 @@ impl Content {
     fn still<'a>(
         &'a self,
         draws: &'a ViewDraws,
-        casters: &'a [&dyn ShadowCaster],
+        casters: &'a FrameCasters<'_>,
     ) -> impl Iterator<Item = Drawn> + 'a {
         unchanged(&self.drawn, draws, casters).filter(|was| was.age >= STILL_AFTER)
     }
@@ -187,8 +216,9 @@ impl Content {
 
 impl StillPart {
     /// Is there one, of which `draws` has every caster as it was?
-    fn lasts(&self, draws: &ViewDraws, casters: &[&dyn ShadowCaster]) -> bool {
+    fn lasts(&self, draws: &ViewDraws, casters: &FrameCasters<'_>) -> bool {
         !self.casters.is_empty()
+            && draws.view.may_keep_depths_from(self.render_reach)
             && unchanged(&self.casters, draws, casters).count() == self.casters.len()
     }
 
@@ -216,11 +246,11 @@ impl Drawn {
 /// The casters of `draws` as they are.
 fn now<'a>(
     draws: &'a ViewDraws,
-    casters: &'a [&dyn ShadowCaster],
+    casters: &'a FrameCasters<'_>,
 ) -> impl Iterator<Item = Drawn> + 'a {
     draws.casters.iter().map(|&index| Drawn {
         index,
-        revision: casters[index as usize].revision(),
+        revision: casters.facts(index).revision,
         age: 0,
     })
 }
@@ -229,7 +259,7 @@ fn now<'a>(
 fn unchanged<'a>(
     before: &'a [Drawn],
     draws: &'a ViewDraws,
-    casters: &'a [&dyn ShadowCaster],
+    casters: &'a FrameCasters<'_>,
 ) -> impl Iterator<Item = Drawn> + 'a {
     let mut now = now(draws, casters).peekable();
     before.iter().copied().filter(move |was| {
@@ -239,10 +269,10 @@ fn unchanged<'a>(
 }
 
 /// Texels of copying that drawing the casters would cost.
-fn worth(drawn: impl Iterator<Item = Drawn>, casters: &[&dyn ShadowCaster]) -> u64 {
+fn worth(drawn: impl Iterator<Item = Drawn>, casters: &FrameCasters<'_>) -> u64 {
     drawn
         .map(|drawn| {
-            let triangles = casters[drawn.index as usize].triangles();
+            let triangles = casters.facts(drawn.index).triangles;
             TEXELS_PER_DRAW + TEXELS_PER_TRIANGLE * u64::from(triangles)
         })
         .sum()

@@ -5,11 +5,12 @@ use bytemuck::Zeroable;
 use crate::ShadowError;
 use crate::cast::content::ViewDraws;
 use crate::cast::cube_rule::one_pass_casters;
+use crate::cast::draw_casters::{DrawnCaster, PassDefaults, draw_casters};
 use crate::cast::multiview::{FACE_COUNT, SIX_VIEWS, draws_six_views};
 use crate::cast::pipeline_build::six_views_layout;
-use crate::cast::recorder::{CasterViewUniform, VIEW_UNIFORM_BYTES, draw_casters};
+use crate::cast::recorder::{CasterViewUniform, VIEW_UNIFORM_BYTES};
 use crate::cast::upload::{PendingUpload, UploadBuffer};
-use crate::cast::{ShadowCaster, capture_device_errors};
+use crate::cast::{CasterPipeline, DepthMap, FrameCasters, capture_device_errors};
 
 /// Uniforms of six views for one pass.
 #[derive(Debug)]
@@ -20,13 +21,13 @@ pub(crate) struct CubePass {
 }
 
 /// One pass that is the cheaper way, with everything made that could fail.
-pub(crate) struct PreparedCubePass {
+pub(crate) struct PreparedCubePass<'a> {
     upload: Option<PendingUpload>,
     /// All casters of all faces.
-    casters: Vec<u32>,
+    casters: Vec<DrawnCaster<'a>>,
 }
 
-impl PreparedCubePass {
+impl PreparedCubePass<'_> {
     /// Was anything made on the device?
     pub fn uploads(&self) -> bool {
         self.upload.is_some()
@@ -66,21 +67,23 @@ impl CubePass {
 
     /// Stages one pass for `views`, all of which are to be drawn whole; none where a pass each is cheaper, or a caster cannot be
     /// drawn into six views at once.
-    pub fn prepare(
+    pub fn prepare<'a>(
         &self,
         device: &wgpu::Device,
         views: &[ViewDraws],
-        casters: &[&dyn ShadowCaster],
-    ) -> Result<Option<PreparedCubePass>, ShadowError> {
+        casters: &FrameCasters<'a>,
+    ) -> Result<Option<PreparedCubePass<'a>>, ShadowError> {
         let Some(union) = one_pass_casters(views, casters) else {
             return Ok(None);
         };
-        let mut pipelines = union
-            .iter()
-            .map(|&index| casters[index as usize].pipeline());
-        if !pipelines.all(|pipeline| pipeline.six_views(device).is_some()) {
+        let drawn = union.into_iter().map(|index| {
+            let pipeline = casters.caster(index).pipeline();
+            let is_ready = pipeline.device() == device && pipeline.six_views().is_some();
+            is_ready.then_some(DrawnCaster { index, pipeline })
+        });
+        let Some(drawn) = drawn.collect() else {
             return Ok(None);
-        }
+        };
         // A face without a view keeps nothing: its depth is beyond the clip volume.
         let mut nowhere = CasterViewUniform::zeroed();
         nowhere.clip_from_anchor[3] = [0.0, 0.0, -1.0, 1.0];
@@ -92,36 +95,46 @@ impl CubePass {
             upload: self
                 .faces
                 .prepare(device, bytemuck::cast_slice(&uniforms))?,
-            casters: union,
+            casters: drawn,
         }))
     }
 
     /// Draws into the six layers of `map` at once. Each view's list becomes what was drawn into it.
     pub fn record(
         &mut self,
-        device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
-        map: &wgpu::TextureView,
-        prepared: PreparedCubePass,
+        map: &DepthMap,
+        prepared: PreparedCubePass<'_>,
         views: &mut [ViewDraws],
-        casters: &[&dyn ShadowCaster],
+        casters: &FrameCasters<'_>,
     ) {
         self.faces.commit(encoder, prepared.upload);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(&self.label),
             color_attachments: &[],
-            depth_stencil_attachment: Some(super::depth_attachment(map, super::CLEAR)),
+            depth_stencil_attachment: Some(super::depth_attachment(map.array_view(), super::CLEAR)),
             timestamp_writes: None,
             occlusion_query_set: None,
             multiview_mask: SIX_VIEWS,
         });
-        pass.set_bind_group(0, &self.bind_group, &[]);
+        let defaults = PassDefaults {
+            view_group: &self.bind_group,
+            offsets: &[],
+            map_size: map.size(),
+        };
         let drawn = prepared.casters.iter().copied();
-        draw_casters(&mut pass, &views[0].view, drawn, casters, |pipeline| {
-            pipeline.six_views(device)
-        });
+        draw_casters(
+            &mut pass,
+            &defaults,
+            &views[0].view,
+            drawn,
+            casters,
+            CasterPipeline::six_views,
+        );
         for draws in views {
-            draws.casters.clone_from(&prepared.casters);
+            draws.casters.clear();
+            let drawn = prepared.casters.iter().map(|caster| caster.index);
+            draws.casters.extend(drawn);
         }
     }
 

@@ -41,7 +41,8 @@ impl CubePipelines {
         })
     }
 
-    /// The pipeline for transforms that mirror, or for the others. Asked only on devices with `Features::MULTIVIEW`.
+    /// The pipeline for transforms that mirror, or for the others. `device` is the one that the caster's other pipelines were
+    /// made on, and has `Features::MULTIVIEW`.
     pub fn get(&self, device: &wgpu::Device, mirrored: bool) -> Option<&wgpu::RenderPipeline> {
         let make = || {
             capture_device_errors(device, || self.make(device))

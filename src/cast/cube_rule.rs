@@ -11,7 +11,7 @@
 use glam::Vec4;
 
 use crate::cast::multiview::FACE_COUNT;
-use crate::cast::{ShadowCaster, ViewDraws};
+use crate::cast::{FrameCasters, ViewDraws};
 use crate::fit::ViewPlacement;
 use crate::{Aabb, ShadowView};
 
@@ -24,7 +24,7 @@ const TRIANGLES_PER_PASS: u64 = 4000;
 /// faces that something casts into, all of which are to be drawn whole.
 pub(crate) fn one_pass_casters(
     views: &[ViewDraws],
-    casters: &[&dyn ShadowCaster],
+    casters: &FrameCasters<'_>,
 ) -> Option<Vec<u32>> {
     // By caster, one bit for each view that draws it.
     let mut drawn_by = vec![0u8; casters.len()];
@@ -36,17 +36,18 @@ pub(crate) fn one_pass_casters(
     let passes_saved = (views.len() as u64).saturating_sub(1);
     let (mut draws_saved, mut triangles) = (0, 0);
     let mut union = Vec::new();
-    for (index, (caster, drawn_by)) in (0u32..).zip(casters.iter().zip(drawn_by)) {
+    let all = casters.facts.iter().zip(casters.bounds).zip(drawn_by);
+    for (index, ((facts, bounds), drawn_by)) in (0u32..).zip(all) {
         if drawn_by == 0 {
             continue;
         }
-        let own_triangles = u64::from(caster.triangles());
-        let in_others = |bounds| {
+        let own_triangles = u64::from(facts.triangles);
+        let in_others = |bounds: &Aabb| {
             let others = views.iter().enumerate();
             let mut others = others.filter(|(view, _)| drawn_by >> view & 1 == 0);
             others.any(|(_, draws)| may_show_beyond_reach(bounds, &draws.view))
         };
-        if own_triangles == 0 || !caster.same_in_every_view() || in_others(&caster.bounds()) {
+        if own_triangles == 0 || !facts.same_in_every_view || in_others(bounds) {
             return None;
         }
         draws_saved += u64::from(drawn_by.count_ones()) - 1;

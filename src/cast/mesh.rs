@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::Mat4;
 
+use crate::cast::mesh_check::{check_bounds, check_buffers, check_matrix, check_pipeline};
 use crate::cast::{CasterPipeline, ModelTransform, Revision, ShadowCaster, filled_buffer};
 use crate::error::CasterError;
 use crate::{Aabb, ShadowView};
@@ -35,15 +36,17 @@ pub enum MeshIndices {
 pub struct MeshCasterDescriptor<'a> {
     /// Label of the transform buffer.
     pub label: wgpu::Label<'a>,
-    /// A pipeline with the built-in vertex stage. Where it culls and the transform mirrors, its mirrored twin is used.
+    /// A pipeline with the built-in vertex stage, made on the same device. Where it culls and the transform mirrors, its
+    /// mirrored twin is used. One with the engine's own vertex stage will do if it takes no more than vertex buffer 0 and no
+    /// bind group of its own.
     pub pipeline: &'a CasterPipeline,
     /// Vertices laid out as the pipeline says, created with `BufferUsages::VERTEX`.
     pub vertices: &'a wgpu::Buffer,
     /// What to draw.
     pub indices: MeshIndices,
-    /// Bounds of the drawn vertices in model space.
+    /// Bounds of the drawn vertices in model space: finite, or empty for a mesh that casts nothing.
     pub bounds_model: Aabb,
-    /// Render space from model space: affine and finite.
+    /// Render space from model space: affine and finite, and so small that it takes the bounds to finite ones.
     pub render_from_model: Mat4,
 }
 
@@ -57,6 +60,7 @@ pub struct MeshCaster {
     bounds_render: Aabb,
     transform: Option<wgpu::Buffer>,
     render_from_model: Mat4,
+    label: String,
     id: u64,
     version: u64,
 }
@@ -67,97 +71,109 @@ impl MeshCaster {
     /// Keeps handles of the buffers; nothing is copied but the matrix.
     ///
     /// # Errors
-    /// [`CasterError`] for a non-finite matrix, a buffer without its usage flag, index and vertex ranges that a buffer does
-    /// not hold, or a device that is lost or out of memory. (A mesh that needs no matrix makes nothing on the device.)
+    /// [`CasterError`] for a matrix or bounds that are not finite, a pipeline that takes more than a mesh sets or is another
+    /// device's, a buffer without its usage flag or of another device, index and vertex ranges that a buffer does not hold, or
+    /// a device that is lost or out of memory.
     pub fn new(
         device: &wgpu::Device,
         descriptor: &MeshCasterDescriptor<'_>,
     ) -> Result<Self, CasterError> {
         check_matrix(&descriptor.render_from_model)?;
-        check_buffers(descriptor)?;
+        check_pipeline(device, descriptor.pipeline)?;
+        check_buffers(device, descriptor)?;
         let has_matrix = matches!(
             descriptor.pipeline.model_transform(),
             ModelTransform::InstanceMatrix { .. }
         );
-        let transform = has_matrix
-            .then(|| {
-                filled_buffer(
-                    device,
-                    descriptor.label.unwrap_or("shadow mesh caster"),
-                    &matrix_bytes(descriptor.pipeline, &descriptor.render_from_model),
-                    wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
-                )
-            })
-            .transpose()
-            .map_err(|refusal| CasterError::Device {
-                object: "the transform of a mesh",
-                refusal,
-            })?;
-        let mirrors = descriptor.render_from_model.determinant() < 0.0;
-        let bounds_render = if has_matrix {
-            descriptor
-                .bounds_model
-                .transformed(&descriptor.render_from_model)
-        } else {
-            descriptor.bounds_model
-        };
-        Ok(Self {
-            pipeline: if has_matrix && mirrors {
-                descriptor.pipeline.mirrored()
-            } else {
-                descriptor.pipeline.clone()
-            },
+        let mut mesh = Self {
+            pipeline: descriptor.pipeline.clone(),
             vertices: descriptor.vertices.clone(),
             indices: descriptor.indices.clone(),
             bounds_model: descriptor.bounds_model,
-            bounds_render,
-            transform,
+            bounds_render: descriptor.bounds_model,
+            transform: None,
             render_from_model: descriptor.render_from_model,
+            label: descriptor.label.unwrap_or("shadow mesh caster").to_owned(),
             id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
             version: 0,
-        })
+        };
+        if has_matrix {
+            mesh.transform = Some(mesh.transform_buffer(&descriptor.render_from_model)?);
+            if mirrors(&descriptor.render_from_model) {
+                mesh.pipeline = mesh.pipeline.mirrored();
+            }
+        }
+        mesh.bounds_render = mesh.bounds(&mesh.bounds_model, &mesh.render_from_model)?;
+        Ok(mesh)
     }
 
     /// Moves the mesh. A transform equal to the present one changes nothing. Without an instance matrix in its pipeline the
     /// mesh stands in render space and does not move.
     ///
+    /// What was recorded before shows the mesh where it was then, whenever it is submitted: the matrix goes into a new buffer,
+    /// and passes keep the one that they were recorded with.
+    ///
     /// # Errors
-    /// [`CasterError::NotFinite`] for a non-finite matrix; the mesh stays where it was.
-    pub fn set_transform(
-        &mut self,
-        queue: &wgpu::Queue,
-        render_from_model: Mat4,
-    ) -> Result<(), CasterError> {
+    /// [`CasterError::NotFinite`] for a matrix that is not finite or takes the bounds to infinity, [`CasterError::Device`] for
+    /// a device that is lost or out of memory; the mesh stays where it was.
+    pub fn set_transform(&mut self, render_from_model: Mat4) -> Result<(), CasterError> {
         check_matrix(&render_from_model)?;
-        let Some(buffer) = &self.transform else {
-            return Ok(());
-        };
-        if render_from_model == self.render_from_model {
+        if self.transform.is_none() || render_from_model == self.render_from_model {
             return Ok(());
         }
-        queue.write_buffer(buffer, 0, &matrix_bytes(&self.pipeline, &render_from_model));
-        if (render_from_model.determinant() < 0.0) != (self.render_from_model.determinant() < 0.0) {
+        let bounds_render = self.bounds(&self.bounds_model, &render_from_model)?;
+        self.transform = Some(self.transform_buffer(&render_from_model)?);
+        if mirrors(&render_from_model) != mirrors(&self.render_from_model) {
             self.pipeline = self.pipeline.mirrored();
         }
         self.render_from_model = render_from_model;
-        self.bounds_render = self.bounds_model.transformed(&render_from_model);
+        self.bounds_render = bounds_render;
         self.version += 1;
         Ok(())
     }
 
-    /// Render space from model space.
+    /// Returns the transform to render space from model space.
     pub fn render_from_model(&self) -> Mat4 {
         self.render_from_model
     }
 
     /// Says that the buffers' contents have changed, and where they lie now.
-    pub fn geometry_changed(&mut self, bounds_model: Aabb) {
+    ///
+    /// # Errors
+    /// [`CasterError::NotFinite`] for bounds that are neither finite nor empty; the mesh keeps those that it had.
+    pub fn geometry_changed(&mut self, bounds_model: Aabb) -> Result<(), CasterError> {
+        self.bounds_render = self.bounds(&bounds_model, &self.render_from_model)?;
         self.bounds_model = bounds_model;
-        self.bounds_render = match self.transform {
-            Some(_) => bounds_model.transformed(&self.render_from_model),
-            None => bounds_model,
-        };
         self.version += 1;
+        Ok(())
+    }
+
+    /// Returns where a mesh with `bounds_model` would lie under a transform.
+    fn bounds(&self, bounds_model: &Aabb, render_from_model: &Mat4) -> Result<Aabb, CasterError> {
+        check_bounds("MeshCasterDescriptor::bounds_model", bounds_model)?;
+        if self.transform.is_none() {
+            return Ok(*bounds_model);
+        }
+        let bounds = bounds_model.transformed(render_from_model);
+        check_bounds(
+            "MeshCasterDescriptor::render_from_model * bounds_model",
+            &bounds,
+        )?;
+        Ok(bounds)
+    }
+
+    /// Returns a vertex buffer with one instance that holds the matrix where the pipeline reads it.
+    fn transform_buffer(&self, render_from_model: &Mat4) -> Result<wgpu::Buffer, CasterError> {
+        filled_buffer(
+            self.pipeline.device(),
+            &self.label,
+            &matrix_bytes(&self.pipeline, render_from_model),
+            wgpu::BufferUsages::VERTEX,
+        )
+        .map_err(|refusal| CasterError::Device {
+            object: "the transform of a mesh",
+            refusal,
+        })
     }
 }
 
@@ -189,6 +205,10 @@ impl ShadowCaster for MeshCaster {
         }
     }
 
+    fn keeps_pass_state(&self) -> bool {
+        true
+    }
+
     fn same_in_every_view(&self) -> bool {
         true
     }
@@ -206,6 +226,11 @@ impl ShadowCaster for MeshCaster {
     }
 }
 
+/// Returns whether a transform turns a counter-clockwise triangle into a clockwise one.
+fn mirrors(render_from_model: &Mat4) -> bool {
+    render_from_model.determinant() < 0.0
+}
+
 /// The matrix at the place where the pipeline reads it.
 fn matrix_bytes(pipeline: &CasterPipeline, matrix: &Mat4) -> Vec<u8> {
     let (array_stride, offset) = match pipeline.model_transform() {
@@ -218,87 +243,4 @@ fn matrix_bytes(pipeline: &CasterPipeline, matrix: &Mat4) -> Vec<u8> {
     let mut bytes = vec![0; array_stride];
     bytes[offset..offset + 64].copy_from_slice(bytemuck::bytes_of(matrix));
     bytes
-}
-
-fn check_matrix(render_from_model: &Mat4) -> Result<(), CasterError> {
-    if render_from_model.is_finite() {
-        Ok(())
-    } else {
-        Err(CasterError::NotFinite {
-            field: "MeshCasterDescriptor::render_from_model",
-            value: render_from_model.to_string(),
-        })
-    }
-}
-
-fn check_buffers(descriptor: &MeshCasterDescriptor<'_>) -> Result<(), CasterError> {
-    let vertices = descriptor.vertices;
-    if !vertices.usage().contains(wgpu::BufferUsages::VERTEX) {
-        return Err(CasterError::BufferUsage {
-            field: "MeshCasterDescriptor::vertices",
-            usage: "BufferUsages::VERTEX",
-        });
-    }
-    match &descriptor.indices {
-        MeshIndices::None { vertices: range } => {
-            check_range("MeshCasterDescriptor::indices.vertices", range)?;
-            require(
-                "MeshCasterDescriptor::vertices",
-                descriptor.pipeline.vertex_bytes(range).max(1),
-                vertices.size(),
-            )
-        }
-        MeshIndices::Buffer {
-            buffer,
-            format,
-            indices,
-            ..
-        } => {
-            check_range("MeshCasterDescriptor::indices.indices", indices)?;
-            require("MeshCasterDescriptor::vertices", 1, vertices.size())?;
-            if let Some(expected) = descriptor.pipeline.strip_index_format() {
-                if expected != Some(*format) {
-                    return Err(CasterError::IndexFormat {
-                        expected,
-                        format: *format,
-                    });
-                }
-            }
-            if !buffer.usage().contains(wgpu::BufferUsages::INDEX) {
-                return Err(CasterError::BufferUsage {
-                    field: "MeshCasterDescriptor::indices.buffer",
-                    usage: "BufferUsages::INDEX",
-                });
-            }
-            let index_bytes = match format {
-                wgpu::IndexFormat::Uint16 => 2,
-                wgpu::IndexFormat::Uint32 => 4,
-            };
-            require(
-                "MeshCasterDescriptor::indices.buffer",
-                u64::from(indices.end) * index_bytes,
-                buffer.size(),
-            )
-        }
-    }
-}
-
-fn check_range(field: &'static str, range: &Range<u32>) -> Result<(), CasterError> {
-    if range.is_empty() {
-        Err(CasterError::EmptyRange {
-            field,
-            start: range.start,
-            end: range.end,
-        })
-    } else {
-        Ok(())
-    }
-}
-
-fn require(field: &'static str, needed: u64, got: u64) -> Result<(), CasterError> {
-    if needed <= got {
-        Ok(())
-    } else {
-        Err(CasterError::BufferTooSmall { field, needed, got })
-    }
 }

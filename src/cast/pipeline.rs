@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::cast::cube_pipeline::CubePipelines;
 use crate::cast::pipeline_build::{ByFormat, create_pipelines};
+use crate::cast::pipeline_reads::{VertexReads, beyond_a_mesh};
 use crate::cast::{DepthFormat, capture_device_errors};
 use crate::error::CasterError;
 
@@ -139,9 +140,14 @@ pub struct CasterPipeline {
 
 #[derive(Debug)]
 struct Variants {
+    device: wgpu::Device,
     by_format: ByFormat,
     /// None for the engine's own WGSL.
     built_in: Option<(PositionAttribute, ModelTransform)>,
+    /// How vertex buffer 0 is read.
+    vertices: VertexReads,
+    /// What it takes that a ready-made mesh does not set.
+    beyond_a_mesh: Option<String>,
     cube: Option<CubePipelines>,
     topology: wgpu::PrimitiveTopology,
     strip_index_format: Option<wgpu::IndexFormat>,
@@ -167,6 +173,7 @@ impl CasterPipeline {
         if descriptor.depth_formats.is_empty() {
             return Err(CasterError::NoDepthFormat);
         }
+        check_counts(device, descriptor)?;
         let built_in = match descriptor.vertex {
             CasterVertex::BuiltIn { position, model } => {
                 check_position(&position)?;
@@ -182,8 +189,11 @@ impl CasterPipeline {
             })?;
         Ok(Self {
             variants: Arc::new(Variants {
+                device: device.clone(),
                 by_format,
                 built_in,
+                vertices: VertexReads::of(&descriptor.vertex),
+                beyond_a_mesh: beyond_a_mesh(&descriptor.vertex),
                 cube: CubePipelines::of(descriptor),
                 topology: descriptor.topology,
                 strip_index_format: descriptor.strip_index_format,
@@ -214,9 +224,15 @@ impl CasterPipeline {
             .map_or(ModelTransform::Identity, |(_, model)| model)
     }
 
-    /// The pipeline that draws the six faces of a cube in one pass; none for the engine's own WGSL.
-    pub(crate) fn six_views(&self, device: &wgpu::Device) -> Option<&wgpu::RenderPipeline> {
-        self.variants.cube.as_ref()?.get(device, self.mirrored)
+    /// Returns the device that it was made on.
+    pub(crate) fn device(&self) -> &wgpu::Device {
+        &self.variants.device
+    }
+
+    /// Returns the pipeline that draws the six faces of a cube in one pass; none for the engine's own WGSL.
+    pub(crate) fn six_views(&self) -> Option<&wgpu::RenderPipeline> {
+        let variants = &self.variants;
+        variants.cube.as_ref()?.get(&variants.device, self.mirrored)
     }
 
     /// Triangles of so many corners; of a strip, without counting restarts.
@@ -233,16 +249,58 @@ impl CasterPipeline {
         is_strip.then_some(self.variants.strip_index_format)
     }
 
-    /// Bytes that a vertex buffer must have to hold `vertices`; 0 where the engine lays its own vertices out.
-    pub(crate) fn vertex_bytes(&self, vertices: &std::ops::Range<u32>) -> u64 {
-        self.variants.built_in.map_or(0, |(position, _)| {
-            let last = vertices.end.saturating_sub(1);
-            if vertices.is_empty() {
-                0
-            } else {
-                u64::from(last) * position.array_stride + position.offset + position.format.size()
-            }
-        })
+    /// Returns the bytes that vertex buffer 0 must have so that `vertices` vertices can be drawn in order, or any through
+    /// indices if it is 0.
+    pub(crate) fn vertex_bytes(&self, vertices: u32) -> u64 {
+        self.variants.vertices.bytes(vertices)
+    }
+
+    /// Returns what the pipeline takes that a ready-made mesh does not set.
+    pub(crate) fn beyond_a_mesh(&self) -> Option<String> {
+        self.variants.beyond_a_mesh.clone()
+    }
+}
+
+/// Checks the number of the engine's bind groups, with the view's, and of its vertex buffers against the device's limits. wgpu
+/// panics over numbers that it has no room for, whatever the limits.
+fn check_counts(
+    device: &wgpu::Device,
+    descriptor: &CasterPipelineDescriptor<'_>,
+) -> Result<(), CasterError> {
+    let CasterVertex::Wgsl {
+        buffers,
+        bind_group_layouts,
+        ..
+    } = descriptor.vertex
+    else {
+        return Ok(());
+    };
+    let limits = device.limits();
+    let counts = [
+        (
+            "CasterVertex::Wgsl::bind_group_layouts (and the view's group 0)",
+            bind_group_layouts.len().saturating_add(1),
+            "max_bind_groups",
+            limits.max_bind_groups,
+        ),
+        (
+            "CasterVertex::Wgsl::buffers",
+            buffers.len(),
+            "max_vertex_buffers",
+            limits.max_vertex_buffers,
+        ),
+    ];
+    let over = counts
+        .into_iter()
+        .find(|(_, needed, _, maximum)| *needed > *maximum as usize);
+    match over {
+        None => Ok(()),
+        Some((field, needed, limit, maximum)) => Err(CasterError::OverDeviceLimit {
+            field,
+            limit,
+            maximum,
+            needed,
+        }),
     }
 }
 

@@ -4,10 +4,11 @@ use bytemuck::{Pod, Zeroable};
 
 use crate::cast::content::{Content, Plan, ViewDraws};
 use crate::cast::cube_pass::{CubePass, PreparedCubePass};
+use crate::cast::draw_casters::{DrawnCaster, PassDefaults, draw_casters};
 use crate::cast::pipeline_build::view_layout;
 use crate::cast::upload::{PendingUpload, UploadBuffer};
 use crate::cast::{
-    CLEAR, CasterPipeline, DepthFormat, DepthMap, ShadowCaster, capture_device_errors,
+    CLEAR, CasterPipeline, DepthFormat, DepthMap, FrameCasters, capture_device_errors,
 };
 use crate::{ShadowError, ShadowView};
 
@@ -47,13 +48,15 @@ struct Layer {
 }
 
 /// Everything that could fail, done before the encoder is touched.
-pub(crate) struct PreparedViews {
+pub(crate) struct PreparedViews<'a> {
     upload: Option<PendingUpload>,
     /// In place of a pass for each view.
-    cube: Option<PreparedCubePass>,
+    cube: Option<PreparedCubePass<'a>>,
+    /// The pipelines of the casters of all views that are drawn, one after the other.
+    pipelines: Vec<&'a CasterPipeline>,
 }
 
-impl PreparedViews {
+impl PreparedViews<'_> {
     /// Was anything made on the device?
     pub fn uploads(&self) -> bool {
         self.upload.is_some() || self.cube.as_ref().is_some_and(PreparedCubePass::uploads)
@@ -125,11 +128,10 @@ impl Recorder {
         })
     }
 
-    /// Would `draws` need a pass?
-    pub fn needs(&self, draws: &ViewDraws, casters: &[&dyn ShadowCaster]) -> bool {
-        !self.layers[draws.view.layer() as usize]
-            .content
-            .holds(draws, casters)
+    /// Returns how many depth passes `draws` needs.
+    pub fn passes(&self, draws: &ViewDraws, casters: &FrameCasters<'_>) -> u32 {
+        let layer = &self.layers[draws.view.layer() as usize];
+        layer.content.plan(draws, casters, self.can_copy).passes()
     }
 
     /// Does the layer of `view` hold that view, of whatever casters?
@@ -143,15 +145,16 @@ impl Recorder {
         parts.map(DepthMap::bytes).sum()
     }
 
-    /// Plans the frame for `map` and stages the uniforms of `views`. `field` is the path of the casters.
-    pub fn prepare(
+    /// Plans the frame for `map` and stages the uniforms of `views`. Each view comes to allow for the rounding of the depths
+    /// that its layer will hold.
+    pub fn prepare<'a>(
         &mut self,
         device: &wgpu::Device,
         map: &DepthMap,
         views: &mut [ViewDraws],
-        casters: &[&dyn ShadowCaster],
-        field: &'static str,
-    ) -> Result<PreparedViews, ShadowError> {
+        casters: &FrameCasters<'a>,
+    ) -> Result<PreparedViews<'a>, ShadowError> {
+        let mut pipelines = Vec::new();
         self.bytes.clear();
         self.bytes
             .resize(self.stride as usize * self.layers.len(), 0);
@@ -162,8 +165,16 @@ impl Recorder {
                 draws.plan = Plan::All;
             }
             if draws.plan != Plan::Keep {
-                check_formats(map, &draws.casters, casters, field)?;
+                add_pipelines(
+                    &mut pipelines,
+                    device,
+                    map.format(),
+                    &draws.casters,
+                    casters,
+                )?;
             }
+            let render_reach = layer.content.render_reach_after(draws);
+            draws.view = draws.view.over_depths_from(render_reach);
             let uniform = CasterViewUniform::of(&draws.view);
             let start = self.stride as usize * draws.view.layer() as usize;
             self.bytes[start..][..size_of_val(&uniform)]
@@ -175,6 +186,7 @@ impl Recorder {
                     return Ok(PreparedViews {
                         upload: None,
                         cube: Some(cube),
+                        pipelines,
                     });
                 }
             }
@@ -182,67 +194,70 @@ impl Recorder {
         Ok(PreparedViews {
             upload: self.uniforms.prepare(device, &self.bytes)?,
             cube: None,
+            pipelines,
         })
     }
 
     /// Records what was planned; returns the number of passes.
+    ///
+    /// What a layer holds is forgotten before anything is drawn into it and known again when its pass is complete: a caster
+    /// that panics leaves a layer behind that the next frame draws anew.
     pub fn record(
         &mut self,
-        device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
         map: &DepthMap,
-        prepared: PreparedViews,
+        prepared: PreparedViews<'_>,
         views: &mut [ViewDraws],
-        casters: &[&dyn ShadowCaster],
+        casters: &FrameCasters<'_>,
     ) -> u32 {
         if let (Some(cube), Some(prepared)) = (&mut self.cube, prepared.cube) {
-            let mut drawn = views.iter().peekable();
-            for (layer, index) in self.layers.iter_mut().zip(0..) {
-                match drawn.next_if(|draws| draws.view.layer() == index) {
-                    Some(draws) => layer.content.replace(draws, casters),
-                    // It is cleared with the others.
-                    None => layer.content = Content::default(),
-                }
+            // All layers are cleared, those of faces that nothing casts into as well.
+            let mut contents: Vec<Content> =
+                self.layers.iter_mut().map(Layer::take_content).collect();
+            for draws in views.iter() {
+                contents[draws.view.layer() as usize].replace(draws, casters);
             }
-            cube.record(device, encoder, map.array_view(), prepared, views, casters);
+            cube.record(encoder, map, prepared, views, casters);
+            for draws in views.iter() {
+                let index = draws.view.layer() as usize;
+                self.layers[index].content = std::mem::take(&mut contents[index]);
+            }
             return 1;
         }
         self.uniforms.commit(encoder, prepared.upload);
         let mut passes = 0;
+        let mut pipelines = prepared.pipelines.as_slice();
         for draws in views {
-            let index = draws.view.layer();
-            let offset = (self.stride * u64::from(index)) as u32;
-            let layer = &mut self.layers[index as usize];
             if draws.plan == Plan::Keep {
                 continue;
             }
-            layer.content.replace(draws, casters);
+            let (own_pipelines, others) = pipelines.split_at(draws.casters.len());
+            pipelines = others;
+            let index = draws.view.layer();
+            let layer = &mut self.layers[index as usize];
+            let mut content = layer.take_content();
+            content.replace(draws, casters);
             let mut pass = LayerPass {
                 encoder,
                 label: &layer.label,
-                view_group: (&self.bind_group, offset),
+                view_group: (&self.bind_group, (self.stride * u64::from(index)) as u32),
                 format: map.format(),
             };
-            let still = |caster: &u32| layer.content.is_still(*caster);
-            let all = draws.casters.iter().copied();
-            passes += 1;
+            let all = draws.casters.iter().zip(own_pipelines);
+            let all = all.map(|(&index, &pipeline)| DrawnCaster { index, pipeline });
+            let (target, view) = (map.layer_view(index), &draws.view);
+            passes += draws.plan.passes();
             match &layer.still_part {
                 Some(part) if draws.plan != Plan::All => {
+                    let still = |caster: &DrawnCaster<'_>| content.is_still(caster.index);
                     let still_casters = all.clone().filter(still);
                     if draws.plan == Plan::RenewStill {
-                        pass.draw(
-                            part.layer_view(0),
-                            CLEAR,
-                            &draws.view,
-                            still_casters,
-                            casters,
-                        );
-                        passes += 1;
+                        pass.draw(part.layer_view(0), CLEAR, view, still_casters, casters);
                     } else {
-                        for index in still_casters {
+                        for caster in still_casters {
                             draws.copied += 1;
                             draws.copied_triangles +=
-                                u64::from(casters[index as usize].triangles());
+                                u64::from(casters.facts(caster.index).triangles);
                         }
                     }
                     pass.encoder.copy_texture_to_texture(
@@ -251,16 +266,11 @@ impl Recorder {
                         map.layer_extent(),
                     );
                     let moving = all.filter(|caster| !still(caster));
-                    pass.draw(
-                        map.layer_view(index),
-                        wgpu::LoadOp::Load,
-                        &draws.view,
-                        moving,
-                        casters,
-                    );
+                    pass.draw(target, wgpu::LoadOp::Load, view, moving, casters);
                 }
-                _ => pass.draw(map.layer_view(index), CLEAR, &draws.view, all, casters),
+                _ => pass.draw(target, CLEAR, view, all, casters),
             }
+            layer.content = content;
         }
         passes
     }
@@ -278,6 +288,11 @@ impl Recorder {
 }
 
 impl Layer {
+    /// Takes away what is known of the layer, which from now on holds nothing that can be relied on.
+    fn take_content(&mut self) -> Content {
+        std::mem::take(&mut self.content)
+    }
+
     /// False where the device has no room for one: then all casters are drawn.
     fn make_still_part(&mut self, device: &wgpu::Device, map: &DepthMap) -> bool {
         if self.still_part.is_none() && !self.has_no_room {
@@ -304,8 +319,8 @@ impl LayerPass<'_> {
         target: &wgpu::TextureView,
         load: wgpu::LoadOp<f32>,
         view: &ShadowView,
-        drawn: impl Iterator<Item = u32>,
-        casters: &'c [&'c dyn ShadowCaster],
+        drawn: impl Iterator<Item = DrawnCaster<'c>>,
+        casters: &FrameCasters<'_>,
     ) {
         let mut pass = self.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(self.label),
@@ -316,54 +331,40 @@ impl LayerPass<'_> {
             multiview_mask: None,
         });
         let (group, offset) = self.view_group;
-        pass.set_bind_group(0, group, &[offset]);
+        let defaults = PassDefaults {
+            view_group: group,
+            offsets: &[offset],
+            map_size: view.map_size(),
+        };
         // That there is a pipeline for the format was checked when the frame was planned.
         let of_format = |pipeline: &'c CasterPipeline| pipeline.wgpu_pipeline(self.format);
-        draw_casters(&mut pass, view, drawn, casters, of_format);
+        draw_casters(&mut pass, &defaults, view, drawn, casters, of_format);
     }
 }
 
-/// Draws casters one after the other, and sets a pipeline only where it is another than before. `variant` is what of a caster's
-/// pipelines goes with the pass; without one the caster is left out.
-pub(crate) fn draw_casters<'c>(
-    pass: &mut wgpu::RenderPass<'_>,
-    view: &ShadowView,
-    drawn: impl Iterator<Item = u32>,
-    casters: &'c [&'c dyn ShadowCaster],
-    variant: impl Fn(&'c CasterPipeline) -> Option<&'c wgpu::RenderPipeline>,
-) {
-    let mut current: Option<&CasterPipeline> = None;
-    for index in drawn {
-        let caster = casters[index as usize];
-        let pipeline = caster.pipeline();
-        if current != Some(pipeline) {
-            let Some(variant) = variant(pipeline) else {
-                continue;
-            };
-            pass.set_pipeline(variant);
-            current = Some(pipeline);
-        }
-        caster.draw(pass, view);
-    }
-}
-
-/// Have all casters of a view pipelines for the map's format?
-fn check_formats(
-    map: &DepthMap,
+/// Adds the pipelines of a view's casters to `pipelines`, each of which must have been made on `device` and for `format`.
+fn add_pipelines<'a>(
+    pipelines: &mut Vec<&'a CasterPipeline>,
+    device: &wgpu::Device,
+    format: DepthFormat,
     drawn: &[u32],
-    casters: &[&dyn ShadowCaster],
-    field: &'static str,
+    casters: &FrameCasters<'a>,
 ) -> Result<(), ShadowError> {
-    let format = map.format();
-    let refused = drawn.iter().find(|&&index| {
-        let pipeline = casters[index as usize].pipeline();
-        pipeline.wgpu_pipeline(format).is_none()
-    });
-    refused.map_or(Ok(()), |&index| {
-        Err(ShadowError::CasterFormat {
-            field,
-            index: index as usize,
-            format,
-        })
-    })
+    let field = casters.field;
+    for &index in drawn {
+        let pipeline = casters.caster(index).pipeline();
+        let index = index as usize;
+        if pipeline.device() != device {
+            return Err(ShadowError::CasterDevice { field, index });
+        }
+        if pipeline.wgpu_pipeline(format).is_none() {
+            return Err(ShadowError::CasterFormat {
+                field,
+                index,
+                format,
+            });
+        }
+        pipelines.push(pipeline);
+    }
+    Ok(())
 }

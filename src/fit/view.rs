@@ -144,6 +144,33 @@ impl ShadowView {
         }
     }
 
+    /// Returns the largest render coordinate, in world units, that positions inside the view have.
+    pub(crate) const fn render_reach(&self) -> f64 {
+        self.render_reach
+    }
+
+    /// Returns the same view over depths that were computed from render coordinates up to `render_reach`, perhaps under another
+    /// origin: whatever is compared with them must allow for their rounding as well.
+    pub(crate) const fn over_depths_from(self, render_reach: f64) -> Self {
+        Self {
+            render_reach: self.render_reach.max(render_reach),
+            ..self
+        }
+    }
+
+    /// Returns whether depths of this view that were computed from render coordinates up to `render_reach` are as good as new
+    /// ones: their rounding is at most twice that of new ones, or at most [`KEPT_ROUNDING_TEXELS`]. So a map is kept while the
+    /// origin moves with a camera, and drawn again, finer, before a rounding from far away can be seen.
+    pub(crate) fn may_keep_depths_from(&self, render_reach: f64) -> bool {
+        let finest_texel_world = match &self.placement {
+            ViewPlacement::Orthographic { window, .. } => window.plane.texel.min_element(),
+            ViewPlacement::Perspective { window, near, .. } => window.texel.min_element() * near,
+        };
+        let rounding_world = position_error_world(render_reach);
+        rounding_world <= 2.0 * self.position_error_world()
+            || rounding_world <= KEPT_ROUNDING_TEXELS * finest_texel_world
+    }
+
     /// The view, if its matrices and its place can be expressed in f32.
     pub(crate) fn checked(self) -> Result<Self, ShadowError> {
         // The square must fit as well: matrices hold reciprocals and products of these.
@@ -295,13 +322,22 @@ impl ShadowView {
 
     /// Rounding error of the render coordinates that casters and receivers start from, in world units: `4u` of the largest.
     pub(crate) fn position_error_world(&self) -> f64 {
-        4.0 * UNIT_ROUNDOFF * self.render_reach
+        position_error_world(self.render_reach)
     }
 
     /// Rounding error of a lookup's arithmetic across the map, in texels: `6uN`.
     pub(crate) fn lateral_error_texels(&self) -> f64 {
         6.0 * UNIT_ROUNDOFF * f64::from(self.map_size)
     }
+}
+
+/// Rounding, in texels, that kept depths may have whatever new ones would have: the offset along the normal that allows for it
+/// is then far below the residual offset of a tenth of a texel.
+const KEPT_ROUNDING_TEXELS: f64 = 1.0 / 64.0;
+
+/// Rounding error in world units of coordinates up to `render_reach`: `4u` of it.
+fn position_error_world(render_reach: f64) -> f64 {
+    4.0 * UNIT_ROUNDOFF * render_reach
 }
 
 /// u of f32: half an ulp of one.

@@ -174,3 +174,89 @@ fn wgsl_that_the_device_refuses() {
         assert_eq!(error.to_string(), text);
     }
 }
+
+/// wgpu itself panics over more bind groups than it has room for, whatever the device's limits.
+#[test]
+fn more_bind_groups_than_the_device_takes() {
+    let gpu = gpu();
+    let layout = gpu
+        .device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: None,
+            entries: &[],
+        });
+    let maximum = gpu.device.limits().max_bind_groups;
+    for count in [maximum as usize - 1, maximum as usize, 7, 8, 9, 40] {
+        let layouts = vec![Some(&layout); count];
+        let vertex = CasterVertex::Wgsl {
+            source: "@vertex fn vertex() -> @builtin(position) vec4<f32> {
+                return shadow_caster_clip(vec3<f32>(0.0));
+            }",
+            vertex_entry: "vertex",
+            fragment_entry: None,
+            buffers: &[],
+            bind_group_layouts: &layouts,
+        };
+        let created = pipeline(&CasterPipelineDescriptor {
+            vertex,
+            ..CasterPipelineDescriptor::new()
+        });
+        if count + 1 <= maximum as usize {
+            created.expect("room for all groups");
+            continue;
+        }
+        let error = created.expect_err("too many groups");
+        let field = "CasterVertex::Wgsl::bind_group_layouts (and the view's group 0)";
+        let wanted = CasterError::OverDeviceLimit {
+            field,
+            limit: "max_bind_groups",
+            maximum,
+            needed: count + 1,
+        };
+        assert_eq!(error, wanted);
+        let needed = count + 1;
+        assert_eq!(
+            error.to_string(),
+            format!("{field} need {needed} of the device's max_bind_groups = {maximum}")
+        );
+    }
+}
+
+/// Any number of vertex buffers and attributes is a pipeline or an error, never a panic.
+#[test]
+fn more_vertex_buffers_than_the_device_takes() {
+    for count in [0, 1, 8, 15, 16, 17, 40, 300] {
+        let attributes: Vec<_> = (0..count)
+            .map(|location| wgpu::VertexAttribute {
+                format: wgpu::VertexFormat::Float32,
+                offset: 0,
+                shader_location: location,
+            })
+            .collect();
+        let buffers: Vec<_> = attributes
+            .iter()
+            .map(|attribute| {
+                Some(wgpu::VertexBufferLayout {
+                    array_stride: 4,
+                    step_mode: wgpu::VertexStepMode::Vertex,
+                    attributes: std::slice::from_ref(attribute),
+                })
+            })
+            .collect();
+        let vertex = CasterVertex::Wgsl {
+            source: "@vertex fn vertex() -> @builtin(position) vec4<f32> {
+                return shadow_caster_clip(vec3<f32>(0.0));
+            }",
+            vertex_entry: "vertex",
+            fragment_entry: None,
+            buffers: &buffers,
+            bind_group_layouts: &[],
+        };
+        let created = pipeline(&CasterPipelineDescriptor {
+            vertex,
+            ..CasterPipelineDescriptor::new()
+        });
+        let fits = count <= gpu().device.limits().max_vertex_buffers;
+        assert_eq!(created.is_ok(), fits, "{count} buffers: {created:?}");
+    }
+}

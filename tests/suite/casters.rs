@@ -237,7 +237,7 @@ fn an_instance_matrix_moves_what_identity_leaves() {
         let mut caster = unindexed(gpu, &pipeline, &vertex_bytes(&triangle), 3, matrix);
         assert_same(&depths(gpu, &caster), &wanted, &format!("{model:?}"));
         caster
-            .set_transform(&gpu.queue, Mat4::IDENTITY)
+            .set_transform(Mat4::IDENTITY)
             .expect("a finite matrix");
         assert_same(&depths(gpu, &caster), &unmoved, &format!("{model:?}"));
     }
@@ -349,13 +349,9 @@ fn culling_takes_the_faces_it_names() {
         for mirror in mirrors {
             let mirrored = turned * Mat4::from_scale(mirror);
             assert_height(&cube.caster(gpu, &pipeline, mirrored), "made mirrored");
-            moving
-                .set_transform(&gpu.queue, mirrored)
-                .expect("a finite matrix");
+            moving.set_transform(mirrored).expect("a finite matrix");
             assert_height(&moving, "become mirrored");
-            moving
-                .set_transform(&gpu.queue, turned)
-                .expect("a finite matrix");
+            moving.set_transform(turned).expect("a finite matrix");
             assert_height(&moving, "back again");
         }
     }

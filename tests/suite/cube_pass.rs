@@ -99,7 +99,7 @@ fn faces_drawn_in_one_pass_are_kept_one_by_one() {
         let moved = Mat4::from_translation(Vec3::new(2.6, 0.1, 0.0));
         stage.casters[1]
             .mesh
-            .set_transform(&stage.gpu.queue, moved)
+            .set_transform(moved)
             .expect("an affine matrix");
     });
     let reports = pair.record("moved", LIGHT);
@@ -122,9 +122,7 @@ fn one_pass_and_copied_layers_take_turns() {
             for told in &mut stage.casters[moving.clone()] {
                 let step = Vec3::new(0.0, 0.01, 0.02) * if frame % 2 == 0 { 1.0 } else { -1.0 };
                 let moved = Mat4::from_translation(step) * told.mesh.render_from_model();
-                told.mesh
-                    .set_transform(&stage.gpu.queue, moved)
-                    .expect("an affine matrix");
+                told.mesh.set_transform(moved).expect("an affine matrix");
             }
         });
         let [one, _] = pair.record(&format!("frame {frame}"), LIGHT);

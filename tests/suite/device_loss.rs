@@ -209,7 +209,7 @@ fn a_lost_device_makes_nothing() {
         },
     );
     let wanted = CasterError::Device {
-        object: "the transform of a mesh",
+        object: "a mesh",
         refusal: refusal.clone(),
     };
     assert_eq!(error.expect_err("no mesh"), wanted);
@@ -272,11 +272,13 @@ fn a_lost_device_draws_nothing() {
         status
     };
     assert_eq!(status(&caster), Ok(ViewStatus::Drawn));
-    caster.geometry_changed(mesh.bounds());
+    let changed = caster.geometry_changed(mesh.bounds());
+    changed.expect("finite bounds");
     assert_eq!(status(&caster), Ok(ViewStatus::Drawn));
     lost.device.destroy();
     assert_eq!(status(&caster), Ok(ViewStatus::Kept));
-    caster.geometry_changed(mesh.bounds());
+    let changed = caster.geometry_changed(mesh.bounds());
+    changed.expect("finite bounds");
     let error = ShadowError::Device {
         object: "a depth pass",
         refusal: DeviceRefusal::Lost,

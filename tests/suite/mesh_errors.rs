@@ -2,11 +2,12 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, CasterError, CasterPipeline, CasterPipelineDescriptor, Coverage, DirectionalFrame,
-    DirectionalLight, DirectionalShadow, MeshCaster, MeshCasterDescriptor, MeshIndices,
+    Aabb, CasterError, CasterPipeline, CasterPipelineDescriptor, CasterVertex, Coverage,
+    DeviceRefusal, DirectionalFrame, DirectionalLight, DirectionalShadow, MeshCaster,
+    MeshCasterDescriptor, MeshIndices, ShadowCaster,
 };
 
-use crate::support::gpu::gpu;
+use crate::support::gpu::{Gpu, gpu};
 use crate::support::probe::record;
 use crate::support::scene::{Mesh, default_pipeline};
 
@@ -78,9 +79,7 @@ fn meshes_that_do_not_fit_their_buffers() {
         let error = MeshCaster::new(&gpu.device, &descriptor).expect_err(&message);
         assert_eq!(error.to_string(), message);
     }
-    let error = caster
-        .set_transform(&gpu.queue, infinite)
-        .expect_err("infinite");
+    let error = caster.set_transform(infinite).expect_err("infinite");
     assert!(matches!(error, CasterError::NotFinite { .. }), "{error}");
     assert_eq!(caster.render_from_model(), Mat4::IDENTITY);
 }
@@ -235,4 +234,250 @@ fn meshes_that_cannot_be_drawn() {
         }
     }
     assert!(failures.is_empty(), "accepted, and not drawn: {failures:?}");
+}
+
+/// A pipeline with the engine's own vertex stage.
+fn engine_pipeline(
+    gpu: &Gpu,
+    source: &str,
+    buffers: &[Option<wgpu::VertexBufferLayout<'_>>],
+    bind_group_layouts: &[Option<&wgpu::BindGroupLayout>],
+) -> CasterPipeline {
+    CasterPipeline::new(
+        &gpu.device,
+        &CasterPipelineDescriptor {
+            vertex: CasterVertex::Wgsl {
+                source,
+                vertex_entry: "vertex",
+                fragment_entry: None,
+                buffers,
+                bind_group_layouts,
+            },
+            ..CasterPipelineDescriptor::new()
+        },
+    )
+    .expect("a valid pipeline")
+}
+
+/// A mesh sets vertex buffer 0, and buffer 1 for the built-in matrix: a pipeline that reads more would lose the encoder.
+#[test]
+fn pipelines_that_take_more_than_a_mesh_sets() {
+    let gpu = gpu();
+    let attribute = |location, step_mode| {
+        let attributes: &'static [wgpu::VertexAttribute] = match location {
+            0 => &wgpu::vertex_attr_array![0 => Float32x3],
+            _ => &wgpu::vertex_attr_array![1 => Float32x3],
+        };
+        Some(wgpu::VertexBufferLayout {
+            array_stride: 12,
+            step_mode,
+            attributes,
+        })
+    };
+    let (per_vertex, per_instance) = (
+        attribute(0, wgpu::VertexStepMode::Vertex),
+        attribute(0, wgpu::VertexStepMode::Instance),
+    );
+    let one = "@vertex fn vertex(@location(0) place: vec3<f32>) -> @builtin(position) vec4<f32> {
+        return shadow_caster_clip(place);
+    }";
+    let two = "@vertex fn vertex(@location(0) place: vec3<f32>, @location(1) shift: vec3<f32>)
+        -> @builtin(position) vec4<f32> {
+        return shadow_caster_clip(place + shift);
+    }";
+    let none =
+        "@vertex fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+        return shadow_caster_clip(vec3<f32>(f32(index)));
+    }";
+    let layout = gpu
+        .device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: None,
+            entries: &[],
+        });
+    let second = attribute(1, wgpu::VertexStepMode::Instance);
+    let cases = [
+        (engine_pipeline(gpu, one, &[per_vertex.clone()], &[]), None),
+        (engine_pipeline(gpu, none, &[], &[]), None),
+        (
+            engine_pipeline(gpu, two, &[per_vertex.clone(), second], &[]),
+            Some("vertex buffer 1"),
+        ),
+        (
+            engine_pipeline(gpu, one, &[per_vertex.clone()], &[Some(&layout)]),
+            Some("bind group 1"),
+        ),
+        (
+            engine_pipeline(gpu, one, &[per_vertex], &[None, Some(&layout)]),
+            Some("bind group 2"),
+        ),
+    ];
+    let mesh = Mesh::cuboid(Vec3::ZERO, Vec3::ONE);
+    let vertices = gpu.buffer(&mesh.positions, wgpu::BufferUsages::VERTEX);
+    let create = |pipeline: &CasterPipeline, vertices, indices| {
+        MeshCaster::new(
+            &gpu.device,
+            &MeshCasterDescriptor {
+                label: None,
+                pipeline,
+                vertices,
+                indices,
+                bounds_model: mesh.bounds(),
+                render_from_model: Mat4::IDENTITY,
+            },
+        )
+    };
+    for (pipeline, needs) in &cases {
+        let created = create(pipeline, &vertices, MeshIndices::None { vertices: 0..6 });
+        match (created, needs) {
+            (Ok(caster), None) => assert_can_be_drawn(gpu, &caster),
+            (Err(error), Some(needs)) => {
+                let wanted = CasterError::MeshPipeline {
+                    needs: (*needs).to_owned(),
+                };
+                assert_eq!(error, wanted);
+                assert!(error.to_string().ends_with(&format!("takes {needs}")));
+            }
+            (created, needs) => panic!("{created:?} where {needs:?} is needed"),
+        }
+    }
+    // Vertices of the engine's own layout must be there as well, and one of a buffer that is read per instance.
+    let (drawn, _) = &cases[0];
+    let error = create(drawn, &vertices, MeshIndices::None { vertices: 0..9 });
+    let wanted = CasterError::BufferTooSmall {
+        field: "MeshCasterDescriptor::vertices",
+        needed: 108,
+        got: 96,
+    };
+    assert_eq!(error.expect_err("too few vertices"), wanted);
+    let stepped = engine_pipeline(gpu, one, &[per_instance], &[]);
+    let small = gpu.buffer(&[0.0_f32; 2], wgpu::BufferUsages::VERTEX);
+    let indices = || MeshIndices::Buffer {
+        buffer: gpu.buffer(&mesh.indices, wgpu::BufferUsages::INDEX),
+        format: wgpu::IndexFormat::Uint32,
+        indices: 0..36,
+        base_vertex: 0,
+    };
+    let error = create(&stepped, &small, indices()).expect_err("no whole instance");
+    assert!(
+        matches!(
+            error,
+            CasterError::BufferTooSmall {
+                needed: 12,
+                got: 8,
+                ..
+            }
+        ),
+        "{error}"
+    );
+    let caster = create(&stepped, &vertices, indices()).expect("an instance");
+    assert_can_be_drawn(gpu, &caster);
+}
+
+fn assert_can_be_drawn(gpu: &Gpu, caster: &MeshCaster) {
+    let mut shadow = DirectionalShadow::new(&gpu.device, &Default::default()).expect("a valid sun");
+    let frame = DirectionalFrame {
+        origin: DVec3::ZERO,
+        light: DirectionalLight::new(Vec3::new(0.1, -1.0, 0.2)),
+        coverage: Coverage::Bounds(Aabb::new(Vec3::NEG_ONE, Vec3::splat(2.0))),
+        casters: &[caster],
+        receivers: &[],
+    };
+    assert_eq!(record(gpu, &mut shadow, &frame).draws(), 1);
+}
+
+/// Pipeline and buffers must be those of the device that is passed.
+#[test]
+fn meshes_of_another_device() {
+    let [here, there] = Gpu::two();
+    let mesh = Mesh::cuboid(Vec3::ZERO, Vec3::ONE);
+    let pipelines = [&here, &there].map(default_pipeline);
+    let vertices =
+        [&here, &there].map(|gpu| gpu.buffer(&mesh.positions, wgpu::BufferUsages::VERTEX));
+    let indices = [&here, &there].map(|gpu| gpu.buffer(&mesh.indices, wgpu::BufferUsages::INDEX));
+    let create = |pipeline: usize, vertex: usize, index: usize| {
+        MeshCaster::new(
+            &here.device,
+            &MeshCasterDescriptor {
+                label: None,
+                pipeline: &pipelines[pipeline],
+                vertices: &vertices[vertex],
+                indices: MeshIndices::Buffer {
+                    buffer: indices[index].clone(),
+                    format: wgpu::IndexFormat::Uint32,
+                    indices: 0..36,
+                    base_vertex: 0,
+                },
+                bounds_model: mesh.bounds(),
+                render_from_model: Mat4::IDENTITY,
+            },
+        )
+    };
+    assert_can_be_drawn(&here, &create(0, 0, 0).expect("all of one device"));
+    let field = "MeshCasterDescriptor::pipeline";
+    let error = create(1, 0, 0).expect_err(field);
+    assert_eq!(error, CasterError::OtherDevice { field });
+    assert_eq!(
+        error.to_string(),
+        format!("{field} must have been made on the device that is passed")
+    );
+    for (created, wanted) in [
+        (create(0, 1, 0), "MeshCasterDescriptor::vertices"),
+        (create(0, 0, 1), "MeshCasterDescriptor::indices.buffer"),
+    ] {
+        let error = created.expect_err(wanted);
+        let CasterError::Buffer {
+            field,
+            refusal: DeviceRefusal::Refused(words),
+        } = &error
+        else {
+            panic!("{error:?}");
+        };
+        assert_eq!(*field, wanted);
+        assert_eq!(
+            error.to_string(),
+            format!("{field} cannot be used on the device: {words}")
+        );
+    }
+}
+
+/// Bounds that are neither finite nor empty are refused when they are given, and so are transforms that make them so: one mesh
+/// must not stop the frame of all.
+#[test]
+fn bounds_without_end() {
+    let gpu = gpu();
+    let mesh = Mesh::cuboid(Vec3::ZERO, Vec3::ONE);
+    let pipeline = default_pipeline(gpu);
+    let mut caster = mesh.caster(gpu, &pipeline, Mat4::IDENTITY);
+    let (bounds, revision) = (caster.bounds(), caster.revision());
+    let is_refused =
+        |result: Result<(), CasterError>| matches!(result, Err(CasterError::NotFinite { .. }));
+    for bad in [
+        Aabb::new(Vec3::splat(f32::NAN), Vec3::ONE),
+        Aabb::new(Vec3::ZERO, Vec3::new(1.0, f32::NAN, 1.0)),
+        Aabb::new(Vec3::NEG_INFINITY, Vec3::INFINITY),
+        Aabb::from_points([Vec3::ZERO, Vec3::splat(f32::NAN), Vec3::ONE]),
+        Aabb::from_points([Vec3::splat(f32::NAN), Vec3::ZERO, Vec3::ONE]),
+    ] {
+        assert!(is_refused(caster.geometry_changed(bad)), "{bad:?}");
+        let created = MeshCaster::new(
+            &gpu.device,
+            &MeshCasterDescriptor {
+                label: None,
+                pipeline: &pipeline,
+                vertices: &gpu.buffer(&mesh.positions, wgpu::BufferUsages::VERTEX),
+                indices: MeshIndices::None { vertices: 0..6 },
+                bounds_model: bad,
+                render_from_model: Mat4::IDENTITY,
+            },
+        );
+        assert!(is_refused(created.map(|_| ())), "{bad:?}");
+    }
+    let huge = Mat4::from_scale(Vec3::splat(f32::MAX)) * Mat4::from_translation(Vec3::ONE);
+    assert!(huge.is_finite() && is_refused(caster.set_transform(huge)));
+    assert_eq!((caster.bounds(), caster.revision()), (bounds, revision));
+    assert_eq!(caster.render_from_model(), Mat4::IDENTITY);
+    // Empty bounds are no error: the mesh casts nothing.
+    caster.geometry_changed(Aabb::EMPTY).expect("empty bounds");
+    assert!(caster.bounds().is_empty());
 }

@@ -42,14 +42,14 @@ impl Crowd {
         }
     }
 
-    fn step(&mut self, gpu: &Gpu) {
+    fn step(&mut self) {
         if self.random.unit() < 0.04 {
             self.movers = [0, 1, 1, 2, self.casters.len()][self.random.index(5)];
         }
         for index in 0..self.movers {
             let shift = self.random.point(DVec3::splat(-2.0), DVec3::splat(2.0));
             self.casters[index]
-                .set_transform(&gpu.queue, Mat4::from_translation(shift.as_vec3()))
+                .set_transform(Mat4::from_translation(shift.as_vec3()))
                 .expect("a finite matrix");
         }
         if self.random.unit() < 0.03 {
@@ -152,7 +152,7 @@ fn kept_maps_of_a_sun_are_what_would_be_drawn() {
         let mut light = Vec3::new(0.4, -1.0, 0.3);
         let mut ways = Ways::default();
         for frame_index in 0..frames {
-            crowd.step(gpu);
+            crowd.step();
             if random.unit() < 0.02 {
                 let eye = random.point(DVec3::new(-9.0, 3.0, 9.0), DVec3::new(9.0, 9.0, 15.0));
                 camera = Camera::modern(eye, DVec3::ZERO, 1.0, 1.5);
@@ -220,7 +220,7 @@ fn kept_faces_of_a_lamp_are_what_would_be_drawn() {
     let mut position_world = DVec3::new(0.3, 1.7, -0.4);
     let mut ways = Ways::default();
     for frame_index in 0..500 {
-        crowd.step(gpu);
+        crowd.step();
         if random.unit() < 0.02 {
             position_world = random.point(DVec3::splat(-4.0), DVec3::splat(4.0));
         }

@@ -340,14 +340,19 @@ fn any_mesh_is_taken_or_refused() {
     run(200, (matrix(), bounds()), |(matrix, bounds)| {
         let mut fine = fine.borrow_mut();
         let held = fine.render_from_model();
-        let result = fine.set_transform(&gpu().queue, matrix);
+        let result = fine.set_transform(matrix);
         counts.count(&result);
         if result.is_err() {
             prop_assert_eq!(fine.render_from_model(), held);
         }
-        fine.geometry_changed(bounds);
+        let held = fine.bounds();
+        let result = fine.geometry_changed(bounds);
+        counts.count(&result);
+        if result.is_err() {
+            prop_assert_eq!(fine.bounds(), held);
+        }
+        prop_assert!(fine.bounds().is_empty() || fine.bounds().is_finite());
         let mut lights = lights.borrow_mut();
-        // Bounds without end are the frame's to refuse; the answer is a visibility all the same.
         counts.count(&lights.record(0, &quiet, &[&*fine]));
         let seen = lights.ask(0, &point)[0];
         prop_assert!((0.0..=1.0).contains(&seen), "{}", seen);

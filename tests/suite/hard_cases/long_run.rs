@@ -278,7 +278,7 @@ fn nothing_piles_up_and_everything_is_freed() {
             for (index, caster) in (0_u8..).zip(&mut casters) {
                 let turn = f32::from(index) + frame as f32 * 0.1;
                 let place = Vec3::new(turn.sin() * 2.0, 0.0, turn.cos() * 2.0);
-                let moved = caster.set_transform(&counted.queue, Mat4::from_translation(place));
+                let moved = caster.set_transform(Mat4::from_translation(place));
                 moved.expect("a finite matrix");
             }
             let list: Vec<&dyn ShadowCaster> = casters

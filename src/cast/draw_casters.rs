@@ -1,0 +1,65 @@
+//! The loop that draws casters, in every kind of depth pass.
+
+use crate::ShadowView;
+use crate::cast::{CasterPipeline, FrameCasters};
+
+/// A caster that a pass draws.
+#[derive(Clone, Copy)]
+pub(crate) struct DrawnCaster<'a> {
+    /// Its index in the engine's list.
+    pub index: u32,
+    pub pipeline: &'a CasterPipeline,
+}
+
+/// The state of a pass that casters rely on and may change.
+pub(crate) struct PassDefaults<'a> {
+    /// Bind group 0: the view or views being rendered.
+    pub view_group: &'a wgpu::BindGroup,
+    pub offsets: &'a [u32],
+    /// Texels per side of the viewport.
+    pub map_size: u32,
+}
+
+impl PassDefaults<'_> {
+    fn set_group(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_bind_group(0, self.view_group, self.offsets);
+    }
+
+    /// Undoes what the engine's own commands may have changed.
+    fn restore(&self, pass: &mut wgpu::RenderPass<'_>) {
+        let size = self.map_size;
+        pass.set_viewport(0.0, 0.0, size as f32, size as f32, 0.0, 1.0);
+        pass.set_scissor_rect(0, 0, size, size);
+        self.set_group(pass);
+    }
+}
+
+/// Draws casters one after the other. Each finds its pipeline, bind group 0, the whole map as viewport and scissor rectangle,
+/// and depths from 0 to 1, whatever the one before it has set. They are set again only after a caster that may have changed
+/// them: in software, setting bind group and scissor rectangle costs several times what a small draw costs. `variant` is what
+/// of a caster's pipelines goes with the pass; without one the caster is left out.
+pub(crate) fn draw_casters<'c>(
+    pass: &mut wgpu::RenderPass<'_>,
+    defaults: &PassDefaults<'_>,
+    view: &ShadowView,
+    drawn: impl Iterator<Item = DrawnCaster<'c>>,
+    casters: &FrameCasters<'_>,
+    variant: impl Fn(&'c CasterPipeline) -> Option<&'c wgpu::RenderPipeline>,
+) {
+    defaults.set_group(pass);
+    let mut current: Option<&CasterPipeline> = None;
+    for DrawnCaster { index, pipeline } in drawn {
+        if current != Some(pipeline) {
+            let Some(variant) = variant(pipeline) else {
+                continue;
+            };
+            pass.set_pipeline(variant);
+            current = Some(pipeline);
+        }
+        casters.caster(index).draw(pass, view);
+        if !casters.facts(index).keeps_pass_state {
+            defaults.restore(pass);
+            current = None;
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! The casters of a frame, with what each has said of itself.
+
+use crate::cast::{Revision, ShadowCaster};
+use crate::{Aabb, ShadowError, check};
+
+/// What a caster has said of itself in a frame, apart from its bounds.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CasterFacts {
+    pub revision: Revision,
+    pub triangles: u32,
+    pub same_in_every_view: bool,
+    pub keeps_pass_state: bool,
+}
+
+/// The casters of a frame. Each of their methods but `pipeline` and `draw` is called once a frame, and the answers serve all
+/// views, so that a caster that changes its mind in between cannot contradict itself.
+#[derive(Clone, Copy)]
+pub(crate) struct FrameCasters<'a> {
+    pub casters: &'a [&'a dyn ShadowCaster],
+    /// One entry per caster.
+    pub bounds: &'a [Aabb],
+    /// One entry per caster.
+    pub facts: &'a [CasterFacts],
+    /// Path of the list in the caller's frame, for errors.
+    pub field: &'static str,
+}
+
+impl<'a> FrameCasters<'a> {
+    /// Returns the caster at `index` of the engine's list.
+    pub fn caster(&self, index: u32) -> &'a dyn ShadowCaster {
+        self.casters[index as usize]
+    }
+
+    /// Returns what the caster at `index` has said of itself.
+    pub fn facts(&self, index: u32) -> &'a CasterFacts {
+        &self.facts[index as usize]
+    }
+
+    pub fn len(&self) -> usize {
+        self.casters.len()
+    }
+}
+
+/// The answers of a frame's casters, in lists that keep their memory from frame to frame.
+#[derive(Debug, Default)]
+pub(crate) struct CasterAnswers {
+    bounds: Vec<Aabb>,
+    facts: Vec<CasterFacts>,
+}
+
+impl CasterAnswers {
+    /// Asks all casters. `field` is the path of the list in the caller's frame.
+    pub fn ask<'a>(
+        &'a mut self,
+        field: &'static str,
+        casters: &'a [&'a dyn ShadowCaster],
+    ) -> Result<FrameCasters<'a>, ShadowError> {
+        self.bounds.clear();
+        self.facts.clear();
+        for caster in casters {
+            self.bounds.push(caster.bounds());
+            self.facts.push(CasterFacts {
+                revision: caster.revision(),
+                triangles: caster.triangles(),
+                same_in_every_view: caster.same_in_every_view(),
+                keeps_pass_state: caster.keeps_pass_state(),
+            });
+        }
+        check::receiver_bounds(field, &self.bounds)?;
+        Ok(FrameCasters {
+            casters,
+            bounds: &self.bounds,
+            facts: &self.facts,
+            field,
+        })
+    }
+}

@@ -1,0 +1,427 @@
+//! Casters that an engine may well hand over and that are not as they should be: they change their mind within a frame, panic,
+//! leave the pass in another state than they found it, or belong to another device.
+
+use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use glam::{DVec3, Mat4, Vec3};
+use wgpu_shadows::{
+    Aabb, CasterPipeline, CasterPipelineDescriptor, Coverage, DepthFormat, DirectionalFrame,
+    DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, MeshCaster, Revision,
+    ShadowCaster, ShadowError, ShadowReport, ShadowView, ViewReport, ViewStatus,
+};
+
+use crate::support::gpu::{Gpu, gpu};
+use crate::support::probe::record;
+use crate::support::readback;
+use crate::support::scene::{Mesh, default_pipeline};
+
+const BOX: Aabb = Aabb::new(Vec3::new(-4.0, -1.0, -4.0), Vec3::new(4.0, 4.0, 4.0));
+const MAP_SIZE: u32 = 64;
+
+fn sun(gpu: &Gpu) -> DirectionalShadow {
+    let descriptor = DirectionalShadowDescriptor {
+        map_size: MAP_SIZE,
+        ..Default::default()
+    };
+    DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun")
+}
+
+fn frame<'a>(casters: &'a [&'a dyn ShadowCaster]) -> DirectionalFrame<'a> {
+    DirectionalFrame {
+        origin: DVec3::ZERO,
+        light: DirectionalLight::new(Vec3::new(0.3, -1.0, 0.2)),
+        coverage: Coverage::Bounds(BOX),
+        casters,
+        receivers: &[],
+    }
+}
+
+/// A slab a unit above the ground, `x` from the middle.
+fn slab(gpu: &Gpu, pipeline: &CasterPipeline, x: f32) -> MeshCaster {
+    let mesh = Mesh::cuboid(Vec3::new(x - 0.5, 1.0, -0.5), Vec3::new(x + 0.5, 1.1, 0.5));
+    mesh.caster(gpu, pipeline, Mat4::IDENTITY)
+}
+
+/// The map of a fresh light.
+fn fresh_map(gpu: &Gpu, casters: &[&dyn ShadowCaster]) -> Vec<f32> {
+    let mut shadow = sun(gpu);
+    record(gpu, &mut shadow, &frame(casters));
+    readback::depth_layer(gpu, shadow.texture(), 0)
+}
+
+/// Fails with a number and not with two maps.
+fn assert_same(found: &[f32], wanted: &[f32], what: &str) {
+    assert!(wanted.iter().any(|depth| *depth > 0.0), "an empty map");
+    let differing = found.iter().zip(wanted).filter(|(a, b)| a != b).count();
+    assert_eq!(differing, 0, "{what}: texels differ");
+}
+
+/// A mesh with two pipelines that offers them by turns, of which one is made for maps of another format.
+struct Fickle {
+    mesh: MeshCaster,
+    other_pipeline: CasterPipeline,
+    calls: Cell<u32>,
+}
+
+impl ShadowCaster for Fickle {
+    fn bounds(&self) -> Aabb {
+        self.mesh.bounds()
+    }
+
+    fn pipeline(&self) -> &CasterPipeline {
+        self.calls.set(self.calls.get() + 1);
+        match self.calls.get() % 2 {
+            0 => &self.other_pipeline,
+            _ => self.mesh.pipeline(),
+        }
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &ShadowView) {
+        self.mesh.draw(pass, view);
+    }
+}
+
+/// A pipeline that is another when it is set than when it was checked: the frame is refused, or everything is in the map.
+#[test]
+fn casters_that_change_their_mind() {
+    let gpu = gpu();
+    let narrow = CasterPipeline::new(
+        &gpu.device,
+        &CasterPipelineDescriptor {
+            depth_formats: &[DepthFormat::Unorm16],
+            ..Default::default()
+        },
+    )
+    .expect("a valid pipeline");
+    let caster = Fickle {
+        mesh: slab(gpu, &default_pipeline(gpu), 0.0),
+        other_pipeline: narrow,
+        calls: Cell::new(0),
+    };
+    let wanted = fresh_map(gpu, &[&caster.mesh]);
+    let (mut complete, mut refused) = (0, 0);
+    for _ in 0..6 {
+        let mut shadow = sun(gpu);
+        let mut encoder = gpu.encoder();
+        let result = shadow
+            .record(&gpu.device, &mut encoder, &frame(&[&caster]))
+            .cloned();
+        gpu.submit(encoder);
+        match result {
+            Ok(_) => {
+                let map = readback::depth_layer(gpu, shadow.texture(), 0);
+                assert_same(&map, &wanted, "a fickle caster");
+                complete += 1;
+            }
+            Err(ShadowError::CasterFormat { index: 0, .. }) => refused += 1,
+            Err(error) => panic!("{error}"),
+        }
+    }
+    assert!(complete > 0 && refused > 0, "{complete} {refused}");
+}
+
+/// A mesh whose triangles become fewer each time that it is asked, among others that stand still.
+struct Shrinking(MeshCaster, Cell<u32>);
+
+impl ShadowCaster for Shrinking {
+    fn bounds(&self) -> Aabb {
+        self.0.bounds()
+    }
+
+    fn pipeline(&self) -> &CasterPipeline {
+        self.0.pipeline()
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &ShadowView) {
+        self.0.draw(pass, view);
+    }
+
+    fn triangles(&self) -> u32 {
+        self.1.set(self.1.get() / 2);
+        self.1.get()
+    }
+
+    fn revision(&self) -> Revision {
+        self.0.revision()
+    }
+}
+
+#[test]
+fn triangles_that_shrink_while_they_are_counted() {
+    let gpu = gpu();
+    let pipeline = default_pipeline(gpu);
+    let still: Vec<_> = (0..30)
+        .map(|index| Shrinking(slab(gpu, &pipeline, index as f32 * 0.1 - 2.0), Cell::new(0)))
+        .collect();
+    let mut mover = slab(gpu, &pipeline, 3.0);
+    let mut shadow = sun(gpu);
+    let mut copied = 0;
+    for step in 0..12 {
+        mover
+            .set_transform(Mat4::from_translation(Vec3::Z * 0.01 * step as f32))
+            .expect("a finite matrix");
+        still.iter().for_each(|caster| caster.1.set(u32::MAX));
+        let mut list: Vec<_> = still.iter().map(|c| c as &dyn ShadowCaster).collect();
+        list.push(&mover);
+        copied += record(gpu, &mut shadow, &frame(&list)).views[0].copied;
+    }
+    assert!(copied > 0 || gpu.adapter.backend == wgpu::Backend::Gl);
+}
+
+#[test]
+fn reports_of_any_numbers_are_counted_without_a_panic() {
+    let view = |casters, copied| ViewReport {
+        layer: 0,
+        status: ViewStatus::Drawn,
+        casters,
+        copied,
+        triangles: u64::MAX,
+        culled: 0,
+        texel_size_world: glam::Vec2::ONE,
+        depth_range_world: 1.0,
+        worst_gap_world: 0.0,
+        slice: None,
+    };
+    let report = ShadowReport {
+        views: vec![view(0, 1), view(u32::MAX, 0), view(7, 2)],
+        passes: 3,
+        bytes_held: 0,
+    };
+    assert_eq!(report.draws(), u32::MAX);
+    assert_eq!(report.triangles(), u64::MAX);
+}
+
+/// A mesh that panics instead of being drawn while it is told to.
+struct Panicking(MeshCaster, Cell<bool>);
+
+impl ShadowCaster for Panicking {
+    fn bounds(&self) -> Aabb {
+        self.0.bounds()
+    }
+
+    fn pipeline(&self) -> &CasterPipeline {
+        self.0.pipeline()
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &ShadowView) {
+        assert!(!self.1.get(), "this caster panics on purpose");
+        self.0.draw(pass, view);
+    }
+
+    fn triangles(&self) -> u32 {
+        self.0.triangles()
+    }
+
+    fn revision(&self) -> Revision {
+        self.0.revision()
+    }
+}
+
+/// An engine that catches the panic of one caster goes on with shadows that are right in the next frame.
+#[test]
+fn a_caster_that_panics_leaves_nothing_behind() {
+    let gpu = gpu();
+    let pipeline = default_pipeline(gpu);
+    let first = slab(gpu, &pipeline, -2.0);
+    let panicking = Panicking(slab(gpu, &pipeline, 0.0), Cell::new(true));
+    let last = slab(gpu, &pipeline, 2.0);
+    let list: [&dyn ShadowCaster; 3] = [&first, &panicking, &last];
+    let mut shadow = sun(gpu);
+    let mut encoder = gpu.encoder();
+    let caught = catch_unwind(AssertUnwindSafe(|| {
+        let _ = shadow.record(&gpu.device, &mut encoder, &frame(&list));
+    }));
+    assert!(caught.is_err(), "the panic is the engine's to catch");
+    gpu.submit(encoder);
+    panicking.1.set(false);
+    let report = record(gpu, &mut shadow, &frame(&list));
+    assert_eq!(report.views[0].status, ViewStatus::Drawn);
+    let map = readback::depth_layer(gpu, shadow.texture(), 0);
+    assert_same(&map, &fresh_map(gpu, &list), "after a panic");
+    let report = record(gpu, &mut shadow, &frame(&list));
+    assert_eq!(report.views[0].status, ViewStatus::Kept);
+}
+
+/// What a caster may do to the pass before it draws.
+#[derive(Clone, Copy, Debug)]
+enum Habit {
+    Viewport,
+    DepthRange,
+    Scissor,
+    Group,
+    Pipeline,
+    Bundle,
+}
+
+/// A mesh that leaves the pass otherwise than it found it, behind what it draws.
+struct Untidy {
+    mesh: MeshCaster,
+    habit: Habit,
+    /// Bind group of a view that looks elsewhere.
+    group: wgpu::BindGroup,
+    bundle: wgpu::RenderBundle,
+    other: CasterPipeline,
+}
+
+impl ShadowCaster for Untidy {
+    fn bounds(&self) -> Aabb {
+        self.mesh.bounds()
+    }
+
+    fn pipeline(&self) -> &CasterPipeline {
+        self.mesh.pipeline()
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &ShadowView) {
+        self.mesh.draw(pass, view);
+        let size = view.map_size() as f32;
+        match self.habit {
+            Habit::Viewport => pass.set_viewport(0.0, 0.0, size / 4.0, size / 4.0, 0.0, 1.0),
+            Habit::DepthRange => pass.set_viewport(0.0, 0.0, size, size, 0.25, 0.5),
+            Habit::Scissor => pass.set_scissor_rect(0, 0, 3, 3),
+            Habit::Group => pass.set_bind_group(0, &self.group, &[0]),
+            Habit::Pipeline => {
+                let other = self.other.wgpu_pipeline(DepthFormat::Float32);
+                pass.set_pipeline(other.expect("a pipeline for 32 bits"));
+            }
+            Habit::Bundle => pass.execute_bundles([&self.bundle]),
+        }
+    }
+}
+
+/// A bind group like the library's own, with a view that sees nothing.
+fn blind_group(gpu: &Gpu) -> wgpu::BindGroup {
+    let layout = gpu
+        .device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: None,
+            entries: &[wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+                ty: wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Uniform,
+                    has_dynamic_offset: true,
+                    min_binding_size: wgpu::BufferSize::new(80),
+                },
+                count: None,
+            }],
+        });
+    let buffer = gpu.buffer(&[0.0_f32; 64], wgpu::BufferUsages::UNIFORM);
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout: &layout,
+        entries: &[wgpu::BindGroupEntry {
+            binding: 0,
+            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer: &buffer,
+                offset: 0,
+                size: wgpu::BufferSize::new(80),
+            }),
+        }],
+    })
+}
+
+fn empty_bundle(gpu: &Gpu) -> wgpu::RenderBundle {
+    let encoder = gpu
+        .device
+        .create_render_bundle_encoder(&wgpu::RenderBundleEncoderDescriptor {
+            label: None,
+            color_formats: &[],
+            depth_stencil: Some(wgpu::RenderBundleDepthStencil {
+                format: wgpu::TextureFormat::Depth32Float,
+                depth_read_only: false,
+                stencil_read_only: true,
+            }),
+            sample_count: 1,
+            multiview: None,
+        });
+    encoder.finish(&wgpu::RenderBundleDescriptor { label: None })
+}
+
+/// The casters after one that changes the pass are drawn as if it had not.
+#[test]
+fn casters_find_the_pass_as_it_should_be() {
+    let gpu = gpu();
+    let pipeline = default_pipeline(gpu);
+    // Culls the side of the slabs that is seen.
+    let other = CasterPipeline::new(
+        &gpu.device,
+        &CasterPipelineDescriptor {
+            cull: Some(wgpu::Face::Back),
+            front_face: wgpu::FrontFace::Cw,
+            ..Default::default()
+        },
+    )
+    .expect("a valid pipeline");
+    let last = slab(gpu, &pipeline, 2.0);
+    let tidy = slab(gpu, &pipeline, -2.0);
+    let wanted = fresh_map(gpu, &[&tidy, &last]);
+    for habit in [
+        Habit::Viewport,
+        Habit::DepthRange,
+        Habit::Scissor,
+        Habit::Group,
+        Habit::Pipeline,
+        Habit::Bundle,
+    ] {
+        let untidy = Untidy {
+            mesh: slab(gpu, &pipeline, -2.0),
+            habit,
+            group: blind_group(gpu),
+            bundle: empty_bundle(gpu),
+            other: other.clone(),
+        };
+        let map = fresh_map(gpu, &[&untidy, &last]);
+        assert_same(&map, &wanted, &format!("{habit:?}"));
+    }
+}
+
+/// A caster whose pipeline is another device's is refused, before anything is recorded.
+#[test]
+fn pipelines_of_another_device() {
+    let [here, there] = Gpu::two();
+    let own = slab(&here, &default_pipeline(&here), 0.0);
+    let foreign = slab(&there, &default_pipeline(&there), 2.0);
+    let mut shadow = sun(&here);
+    let list: [&dyn ShadowCaster; 2] = [&own, &foreign];
+    let mut encoder = here.encoder();
+    let error = shadow
+        .record(&here.device, &mut encoder, &frame(&list))
+        .expect_err("a foreign pipeline");
+    here.submit(encoder);
+    let wanted = ShadowError::CasterDevice {
+        field: "DirectionalFrame::casters",
+        index: 1,
+    };
+    assert_eq!(error, wanted);
+    assert_eq!(
+        error.to_string(),
+        "DirectionalFrame::casters[1]: its CasterPipeline must be made on the device of the light"
+    );
+    let report = record(&here, &mut shadow, &frame(&[&own]));
+    assert_eq!(report.views[0].status, ViewStatus::Drawn);
+}
+
+/// Two frames recorded before either is submitted each show the mesh where it was when they were recorded.
+#[test]
+fn two_frames_before_one_submission() {
+    let gpu = gpu();
+    let pipeline = default_pipeline(gpu);
+    let mut mesh = slab(gpu, &pipeline, -2.0);
+    let wanted = fresh_map(gpu, &[&mesh]);
+    let mut suns = [sun(gpu), sun(gpu)];
+    let mut encoder = gpu.encoder();
+    for (step, shadow) in suns.iter_mut().enumerate() {
+        mesh.set_transform(Mat4::from_translation(Vec3::X * 3.0 * step as f32))
+            .expect("a finite matrix");
+        shadow
+            .record(&gpu.device, &mut encoder, &frame(&[&mesh]))
+            .expect("a valid frame");
+    }
+    gpu.submit(encoder);
+    let first = readback::depth_layer(gpu, suns[0].texture(), 0);
+    assert_same(&first, &wanted, "the first of two frames");
+    let second = readback::depth_layer(gpu, suns[1].texture(), 0);
+    assert_same(&second, &fresh_map(gpu, &[&mesh]), "the second");
+}
