@@ -295,20 +295,21 @@ fn pipelines_that_take_more_than_a_mesh_sets() {
             label: None,
             entries: &[],
         });
+    let only = std::slice::from_ref;
     let second = attribute(1, wgpu::VertexStepMode::Instance);
     let cases = [
-        (engine_pipeline(gpu, one, &[per_vertex.clone()], &[]), None),
+        (engine_pipeline(gpu, one, only(&per_vertex), &[]), None),
         (engine_pipeline(gpu, none, &[], &[]), None),
         (
             engine_pipeline(gpu, two, &[per_vertex.clone(), second], &[]),
             Some("vertex buffer 1"),
         ),
         (
-            engine_pipeline(gpu, one, &[per_vertex.clone()], &[Some(&layout)]),
+            engine_pipeline(gpu, one, only(&per_vertex), &[Some(&layout)]),
             Some("bind group 1"),
         ),
         (
-            engine_pipeline(gpu, one, &[per_vertex], &[None, Some(&layout)]),
+            engine_pipeline(gpu, one, only(&per_vertex), &[None, Some(&layout)]),
             Some("bind group 2"),
         ),
     ];
