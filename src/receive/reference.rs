@@ -11,7 +11,7 @@ use crate::receive::{Bias, Filter, ShadowViewUniform};
 /// One layer of a depth map as read back from the device: rows from the top, ndc depth.
 #[derive(Clone, Copy, Debug)]
 pub struct DepthLayer<'a> {
-    /// Texels per side.
+    /// Texels per side; any size, whatever `depths` holds.
     pub size: u32,
     /// `size * size` depths; those that are missing count as nothing (0).
     pub depths: &'a [f32],
@@ -21,8 +21,11 @@ impl DepthLayer<'_> {
     /// Depth of a texel; beyond the sides, that of the nearest one inside, as the samplers clamp.
     fn depth(&self, x: i64, y: i64) -> f64 {
         let last = (i64::from(self.size) - 1).max(0);
-        let index = y.clamp(0, last) * i64::from(self.size) + x.clamp(0, last);
-        f64::from(self.depths.get(index as usize).copied().unwrap_or(0.0))
+        let [row, column] = [y, x].map(|texel| texel.clamp(0, last).unsigned_abs());
+        // Below the square of the size, which fits into 64 bits without a sign.
+        let index = row * u64::from(self.size) + column;
+        let index = usize::try_from(index).unwrap_or(usize::MAX);
+        f64::from(self.depths.get(index).copied().unwrap_or(0.0))
     }
 }
 

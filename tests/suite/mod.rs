@@ -40,6 +40,7 @@ mod penumbra_twin;
 mod pool;
 mod pool_budget;
 mod receiver_parity;
+mod reference_limits;
 mod self_shadow;
 mod shader_validation;
 mod slice_report;
