@@ -26,23 +26,33 @@ impl Aabb {
         Self { min, max }
     }
 
-    /// The smallest box that holds all `points`; [`Aabb::EMPTY`] for none.
+    /// What no geometry can mend: every box that a NaN went into.
+    const BROKEN: Self = Self {
+        min: Vec3::NAN,
+        max: Vec3::NAN,
+    };
+
+    /// The smallest box that holds all `points`; [`Aabb::EMPTY`] for none, and a broken box where a coordinate is NaN.
     pub fn from_points(points: impl IntoIterator<Item = Vec3>) -> Self {
-        points.into_iter().fold(Self::EMPTY, |bounds, point| Self {
-            min: bounds.min.min(point),
-            max: bounds.max.max(point),
+        points.into_iter().fold(Self::EMPTY, |bounds, point| {
+            bounds.union(Self::new(point, point))
         })
     }
 
-    /// The smallest box that holds both.
+    /// The smallest box that holds both; a broken box where either is.
     pub fn union(self, other: Self) -> Self {
+        // The minimum of a number and a NaN is one or the other, by order.
+        if self.is_nan() || other.is_nan() {
+            return Self::BROKEN;
+        }
         Self {
             min: self.min.min(other.min),
             max: self.max.max(other.max),
         }
     }
 
-    /// The box of the eight transformed corners: holds the transformed geometry for every affine `target_from_source`.
+    /// The box of the eight transformed corners: holds the transformed geometry for every affine `target_from_source`. An empty
+    /// box stays empty. The box is broken where this one is, and where the matrix makes a corner NaN.
     pub fn transformed(self, target_from_source: &Mat4) -> Self {
         if self.is_empty() {
             return Self::EMPTY;
@@ -52,14 +62,19 @@ impl Aabb {
         )
     }
 
-    /// True where `min > max` on some axis. NaN corners are not empty: [`Aabb::is_finite`] is what tells them.
+    /// True where `min > max` on some axis and no coordinate is NaN: a broken box is not empty, and [`Aabb::is_finite`] is what
+    /// tells it.
     pub fn is_empty(&self) -> bool {
-        self.min.cmpgt(self.max).any()
+        self.min.cmpgt(self.max).any() && !self.is_nan()
     }
 
     /// True where every coordinate is finite.
     pub fn is_finite(&self) -> bool {
         self.min.is_finite() && self.max.is_finite()
+    }
+
+    fn is_nan(&self) -> bool {
+        self.min.is_nan() || self.max.is_nan()
     }
 
     /// Corner `index` in `0..8`: bit 0 chooses x, bit 1 y, bit 2 z; a set bit takes `max`.

@@ -3,6 +3,7 @@
 mod any_input;
 mod binding_errors;
 mod blending;
+mod boxes;
 mod cascade_tint;
 mod caster_errors;
 mod casters;
