@@ -83,6 +83,9 @@ struct Candidate {
     refreshed: bool,
 }
 
+/// What a light of importance above 0 counts for at least, as a share of the most important one of the frame.
+const LEAST_SHARE_OF_IMPORTANCE: f64 = 1.0 / 4096.0;
+
 impl LocalLights {
     /// For `capacity` lights.
     pub fn new(capacity: u32) -> Self {
@@ -253,14 +256,25 @@ impl LocalLights {
 
     /// Spends the budget: lights in need of a refresh by importance times the frames they have waited, so that none starves.
     /// The first is always refreshed, however small the budget.
+    ///
+    /// In f64 no product overflows or vanishes: a finite f32 times 2³² is far below the largest f64. An importance above 0
+    /// counts for no less than a share of the frame's greatest. With `n` lights, the one of weight `w` beside a greatest of `W`
+    /// then waits at most `(n - 1) W / w + n` frames: once its product exceeds `(n - 1) W`, only those go before it that have
+    /// waited for `n - 1` frames, and that is each of the others once.
     fn choose(&self, frame: &LocalFrame<'_>, candidates: &mut [Candidate]) {
         let Some(max_views) = frame.max_views else {
             return;
         };
+        let importances = frame.lights.iter().map(|light| f64::from(light.importance));
+        let least = importances.fold(0.0, f64::max) * LEAST_SHARE_OF_IMPORTANCE;
         let urgency = |index: usize| {
             let light = &frame.lights[index];
+            let weight = match f64::from(light.importance) {
+                importance if importance > 0.0 => importance.max(least),
+                _ => 0.0,
+            };
             let waited = self.slots[light.slot as usize].waited;
-            light.importance * (1.0 + waited as f32)
+            weight * (1.0 + f64::from(waited))
         };
         let mut order: Vec<usize> = (0..candidates.len())
             .filter(|&index| candidates[index].needed > 0)

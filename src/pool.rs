@@ -62,8 +62,10 @@ pub struct PoolLight<L> {
     /// The light.
     pub light: L,
     /// Who is refreshed first where a budget does not suffice: at least 0, finite; for instance the light's share of the
-    /// picture. A light that is put off counts for one frame more each time, so that none above 0 starves; one at 0 has what
-    /// the others leave.
+    /// picture. Only the proportions count. A light that is put off counts for one frame more each time, so that none above 0
+    /// starves; one at 0 has what the others leave. An importance above 0 counts for at least 1/4096 of the greatest in the
+    /// frame: of `n` lights that always change, one of importance `i` beside a greatest of `g` waits at most
+    /// `(n - 1) min(g / i, 4096) + n` frames.
     pub importance: f32,
 }
 

@@ -40,6 +40,7 @@ mod penumbra_turned;
 mod penumbra_twin;
 mod pool;
 mod pool_budget;
+mod pool_importance;
 mod receiver_parity;
 mod reference_limits;
 mod self_shadow;
