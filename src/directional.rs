@@ -6,7 +6,7 @@ use crate::cast::{CasterAnswers, FrameCasters, ShadowCaster, ViewDraws};
 use crate::check;
 use crate::fit::{
     CameraFrustum, Column, DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes,
-    MAX_CASCADES, Region,
+    MAX_CASCADES, Region, Spacing,
 };
 use crate::light_maps::{LayerBase, LightMaps, LightMapsDescriptor, MapsFrame, light_maps_getters};
 use crate::receive::{Sampling, Selection};
@@ -115,7 +115,10 @@ pub enum Coverage {
 /// What a directional light needs to know of a frame.
 #[derive(Clone, Copy)]
 pub struct DirectionalFrame<'a> {
-    /// World position of render space's origin, f64. Zero unless the engine renders relative to its camera.
+    /// World position of render space's origin, f64. Zero unless the engine renders relative to its camera. Texels keep their
+    /// places in the world, so f64 must tell them apart there: with texels of `t` units, in maps of 64 or more a side, a frame is
+    /// accepted up to at least `2⁴⁷ t` units from the world's origin, 1.4·10¹² for a centimetre. Some hundred times as far it is
+    /// [`ShadowError::ViewNotRepresentable`].
     pub origin: DVec3,
     /// The light.
     pub light: DirectionalLight,
@@ -241,7 +244,7 @@ impl DirectionalShadow {
             casters: casters.bounds,
             receivers: frame.receivers,
         };
-        let fit = self.fit.fit(&input, &self.limits, &mut self.scratch);
+        let fit = self.fit.fit(&input, &self.limits, &mut self.scratch)?;
         let views = self.cull(&fit, &axes, frame.origin, &casters)?;
         let layers: [_; MAX_CASCADES] =
             std::array::from_fn(|layer| LayerBase::directional(layer as u32, fit.slices[layer]));
@@ -286,12 +289,13 @@ impl DirectionalShadow {
         let mut views = self.maps.spare_views();
         for (layer, window) in windows.iter().enumerate() {
             let Some(window) = window else { continue };
+            let spacing = Spacing::around(origin, &window.bounds());
             let column = Column::new(axes, origin, &window.plane);
             let mut drawn = self.maps.spare_list();
             let all = (0u32..).zip(self.scratch.casters.iter().zip(casters.bounds));
             drawn.extend(all.filter_map(|(index, (caster, bounds))| {
                 let marks = caster.can_shadow
-                    && window.holds_part_of(&caster.light)
+                    && window.holds_part_of(&caster.widest_light(spacing))
                     && column.meets(bounds);
                 marks.then_some(index)
             }));

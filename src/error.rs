@@ -86,15 +86,20 @@ pub enum ShadowError {
         /// The matrix, formatted.
         value: String,
     },
-    /// The fitted view cannot be expressed in f32: its extent or its distance from the render origin overflows.
+    /// The fitted view cannot be expressed: its extent or its distance from the render origin overflows f32, or, for a
+    /// directional light, it lies so far from the world's origin that f64 does not tell its texels apart. That is so where four
+    /// steps of f64 (`2⁻⁵⁰ coordinate_world`) exceed `extent_world` divided by the map's texels a side, or by 64 for a smaller
+    /// map, and also exceed what f32 resolves at `distance_world`: for a map of 2048 texels over 100 units, from 5·10¹³ units on.
     #[error(
-        "the fitted view must be representable in f32, got extent {extent_world} at {distance_world} from the render origin"
+        "the fitted view must be representable, got extent {extent_world} at {distance_world} from the render origin and {coordinate_world} from the world's"
     )]
     ViewNotRepresentable {
         /// Largest extent of the view in world units.
         extent_world: f64,
         /// Its distance from the render origin in world units.
         distance_world: f64,
+        /// Its distance from the world's origin in world units.
+        coordinate_world: f64,
     },
     /// A pool has no free slot.
     #[error(

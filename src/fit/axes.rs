@@ -112,6 +112,24 @@ impl LightBox {
         self.min.cmpgt(self.max).any()
     }
 
+    /// The box with every side `distance` farther out.
+    pub fn grown(&self, distance: f64) -> Self {
+        Self {
+            min: self.min - distance,
+            max: self.max + distance,
+        }
+    }
+
+    /// The longer of its sides across the light; 0 for an empty box.
+    pub fn widest_side(&self) -> f64 {
+        (self.max - self.min).truncate().max_element().max(0.0)
+    }
+
+    /// Distance from the origin of light space to the farthest corner.
+    pub fn reach(&self) -> f64 {
+        self.min.abs().max(self.max.abs()).length()
+    }
+
     pub fn include(&mut self, point: DVec3) {
         self.min = self.min.min(point);
         self.max = self.max.max(point);

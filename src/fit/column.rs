@@ -15,6 +15,8 @@ use crate::fit::window::MapWindow;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Column {
     center_render: DVec3,
+    /// World distance by which that may be off.
+    center_error: f64,
     sides: [Side; 3],
 }
 
@@ -44,6 +46,8 @@ impl Column {
         Self {
             // Any point of the axis will do: normals are perpendicular to the light.
             center_render: center_world - origin,
+            // A few ulps of what was subtracted.
+            center_error: 8.0 * f64::EPSILON * origin.length().max(center_world.length()),
             sides,
         }
     }
@@ -54,7 +58,8 @@ impl Column {
         let between = (min + max) * 0.5 - self.center_render;
         let half = (max - min) * 0.5;
         // What rounding may add: a few ulps of the coordinates.
-        let slack = 16.0 * f64::EPSILON * self.center_render.abs().max_element();
+        let slack =
+            16.0 * f64::EPSILON * self.center_render.abs().max_element() + self.center_error;
         self.sides.iter().all(|side| {
             let reach = side.window_reach + side.normal_abs.dot(half);
             side.normal.dot(between).abs() <= reach + slack

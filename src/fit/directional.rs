@@ -2,16 +2,17 @@
 
 use glam::DVec3;
 
-use crate::Aabb;
 use crate::fit::axes::{LightAxes, LightBox};
 use crate::fit::camera::CameraFrustum;
 use crate::fit::column::push_column;
 use crate::fit::footprint::{FootprintScratch, Slice, SliceReport};
 use crate::fit::region::HalfSpaces;
+use crate::fit::spacing::Spacing;
 use crate::fit::split::CascadeSplit;
 use crate::fit::stability::Stability;
 use crate::fit::visible::{self, Seen, SeenBounds};
 use crate::fit::window::{DepthRange, MapWindow, OrthoWindow, WindowRequest};
+use crate::{Aabb, ShadowError};
 
 /// Most cascades that one light may have.
 pub(crate) const MAX_CASCADES: usize = 8;
@@ -53,6 +54,13 @@ pub(crate) struct CasterBounds {
     pub can_shadow: bool,
 }
 
+impl CasterBounds {
+    /// Light-space box of the caster with all that rounding may have taken from it: what a decision against it must miss.
+    pub fn widest_light(&self, spacing: Spacing) -> LightBox {
+        spacing.widest(&self.light)
+    }
+}
+
 /// The windows of a light, kept from frame to frame for their hysteresis.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct DirectionalFit {
@@ -74,7 +82,14 @@ pub(crate) struct FitScratch {
 
 impl DirectionalFit {
     /// The windows for this frame; `scratch.casters` is filled.
-    pub fn fit(&self, input: &FitInput<'_>, limits: &FitLimits, scratch: &mut FitScratch) -> Self {
+    ///
+    /// An error where what casts and receives lies so far from the world's origin that f64 does not tell its places apart.
+    pub fn fit(
+        &self,
+        input: &FitInput<'_>,
+        limits: &FitLimits,
+        scratch: &mut FitScratch,
+    ) -> Result<Self, ShadowError> {
         let visible = match &input.region {
             Region::Bounds(bounds) => SeenBounds::of_box(bounds),
             Region::Camera(camera) => {
@@ -90,13 +105,19 @@ impl DirectionalFit {
                 can_shadow: !bounds.is_empty()
                     && can_shadow(bounds, &visible, input.axes.toward_light()),
             }));
+        let any_casts = scratch.casters.iter().any(|caster| caster.can_shadow);
         let mut next = self.clone();
         for cascade in 0..limits.cascades {
             let slice = camera_slice(input, limits, &visible, cascade);
             let required = required_box(input, limits, slice.as_ref(), &scratch.seen, cascade);
             let held = self.held[cascade].as_ref();
-            let window = required
-                .and_then(|required| fit_window(input, limits, &scratch.casters, required, held));
+            let window = match required {
+                Some(required) if any_casts => {
+                    let spacing = checked_spacing(input, limits, slice.as_ref(), &required)?;
+                    fit_window(input, limits, &scratch.casters, (required, spacing), held)
+                }
+                _ => None,
+            };
             next.held[cascade] = window.or(next.held[cascade]);
             next.windows[cascade] = window;
             next.slices[cascade] = slice.zip(window).map(|(slice, window)| {
@@ -104,8 +125,39 @@ impl DirectionalFit {
                 slice.report(&input.axes, input.origin, &window.plane, scratch)
             });
         }
-        next
+        Ok(next)
     }
+}
+
+/// How finely f64 tells places in `required` apart, if that is fine enough for the map of a cascade.
+fn checked_spacing(
+    input: &FitInput<'_>,
+    limits: &FitLimits,
+    slice: Option<&Slice<'_>>,
+    required: &LightBox,
+) -> Result<Spacing, ShadowError> {
+    let spacing = Spacing::around(input.origin, required);
+    let extent = match slice {
+        // Not what is seen: that may be a corner of something, which needs no finer texels than the rest of the picture.
+        Some(slice) if limits.stability == Stability::Rungs => {
+            let (depth_near, depth_far) = slice.between;
+            let sphere = slice.camera.slice_sphere(depth_near, depth_far);
+            (2.0 * sphere.radius).min(widest_given(input))
+        }
+        _ => required.widest_side(),
+    };
+    let floor = texel_floor(input, required, required.max.z);
+    let distance = render_reach(input, required, required.max.z);
+    spacing.checked(extent, limits.map_size, floor, distance)
+}
+
+/// The wider side, seen from the light, of all that the frame brings.
+fn widest_given(input: &FitInput<'_>) -> f64 {
+    let given = input.casters.iter().chain(input.receivers);
+    let given = given
+        .filter(|bounds| !bounds.is_empty())
+        .fold(Aabb::EMPTY, |all, bounds| all.union(*bounds));
+    input.axes.light_box(&given, DVec3::ZERO).widest_side()
 }
 
 /// Cascade `cascade` of a camera's view; none where its depths hold nothing.
@@ -187,18 +239,18 @@ fn can_shadow(caster: &Aabb, receivers: &SeenBounds, toward_light: DVec3) -> boo
     })
 }
 
-/// The window for receivers in `required`: seen from the light, what both receivers and casters cover.
+/// The window for receivers in `required`: seen from the light, what both receivers and casters cover. What rounding makes
+/// doubtful counts as reaching.
 fn fit_window(
     input: &FitInput<'_>,
     limits: &FitLimits,
     casters: &[CasterBounds],
-    required: LightBox,
+    (required, spacing): (LightBox, Spacing),
     held: Option<&OrthoWindow>,
 ) -> Option<OrthoWindow> {
     let reaches = |caster: &&CasterBounds| {
-        caster.can_shadow
-            && caster.light.max.z > required.min.z
-            && caster.light.overlaps_xy(&required)
+        let light = caster.widest_light(spacing);
+        caster.can_shadow && light.max.z > required.min.z && light.overlaps_xy(&required)
     };
     let mut shadows = LightBox::EMPTY;
     for caster in casters.iter().filter(reaches) {
@@ -210,20 +262,26 @@ fn fit_window(
     let mut covered = required;
     if matches!(input.region, Region::Camera(_)) && limits.stability == Stability::Rungs {
         covered.min = required.min.max(shadows.min).with_z(required.min.z);
-        covered.max = required.max.min(shadows.max);
+        covered.max = required.max.min(shadows.max).max(covered.min);
     }
     covered.max.z = shadows.max.z.max(required.min.z);
+    let texel_floor = texel_floor(input, &covered, required.max.z).max(spacing.finest_texel());
+    let (min, max) = spacing.grown(
+        (covered.min.truncate(), covered.max.truncate()),
+        limits.map_size,
+        texel_floor,
+    );
     let request = WindowRequest {
-        min: covered.min.truncate(),
-        max: covered.max.truncate(),
+        min,
+        max,
         map_size: limits.map_size,
         margin_texels: limits.margin_texels,
-        texel_floor: texel_floor(input, &covered, required.max.z),
+        texel_floor,
         whole: f64::INFINITY,
     };
     let plane = MapWindow::fit(&request, held.map(|held| &held.plane));
     let depth = |near| {
-        let least = plane.texel.max_element();
+        let least = plane.texel.max_element().max(spacing.least_depth());
         DepthRange::fit(covered.min.z, near, least, held.map(|held| &held.depth))
     };
     let window = OrthoWindow {
@@ -236,8 +294,8 @@ fn fit_window(
     push_column(&mut over_window, &input.axes, input.origin, &plane);
     let mut nearest = covered.min.z;
     for (caster, bounds) in casters.iter().zip(input.casters) {
-        if caster.can_shadow && caster.light.max.z > nearest && window.holds_part_of(&caster.light)
-        {
+        let light = caster.widest_light(spacing);
+        if caster.can_shadow && light.max.z > nearest && window.holds_part_of(&light) {
             over_window.visit_vertices(bounds, |vertex| {
                 let z = input.axes.toward_light().dot(input.origin + vertex);
                 nearest = nearest.max(z);
@@ -253,11 +311,16 @@ fn fit_window(
 /// Four ulps of f32 at the farthest render coordinate of what is covered, up to the highest receiver: finer texels than
 /// receivers' positions would resolve nothing. How high a caster stands above them does not count.
 fn texel_floor(input: &FitInput<'_>, covered: &LightBox, highest_receiver: f64) -> f64 {
+    let reach = render_reach(input, covered, highest_receiver);
+    4.0 * f64::from(f32::EPSILON) * reach.max(f64::from(f32::MIN_POSITIVE) * 1e8)
+}
+
+/// The farthest render coordinate, along an axis of the light, of what is covered up to the highest receiver.
+fn render_reach(input: &FitInput<'_>, covered: &LightBox, highest_receiver: f64) -> f64 {
     let origin_light = input.axes.light_from_world * input.origin;
     let highest = covered.max.with_z(highest_receiver);
-    let reach = (covered.min - origin_light)
+    (covered.min - origin_light)
         .abs()
         .max((highest - origin_light).abs())
-        .max_element();
-    4.0 * f64::from(f32::EPSILON) * reach.max(f64::from(f32::MIN_POSITIVE) * 1e8)
+        .max_element()
 }

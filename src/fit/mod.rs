@@ -7,6 +7,7 @@
 //! footprint.rs    what of a slice of the view a window covers
 //! ladder.rs       quantised extents with hysteresis
 //! window.rs       the rectangle of a map plane that a view covers, snapped to whole texels
+//! spacing.rs      how finely f64 tells places apart, far from the world's origin
 //! split.rs        where one cascade ends and the next begins
 //! stability.rs    extents that no motion of the camera changes
 //! visible.rs      what a camera sees of the receivers
@@ -26,6 +27,7 @@ mod ladder;
 mod local;
 mod reached;
 mod region;
+mod spacing;
 mod split;
 mod stability;
 mod view;
@@ -43,6 +45,7 @@ pub(crate) use directional::{
 pub use footprint::SliceReport;
 pub(crate) use local::{LocalFit, LocalInput, MAX_LOCAL_VIEWS};
 pub(crate) use reached::Reached;
+pub(crate) use spacing::Spacing;
 pub use split::CascadeSplit;
 pub use stability::Stability;
 pub use view::ShadowView;

@@ -44,6 +44,16 @@ pub(crate) enum ViewPlacement {
     },
 }
 
+impl ViewPlacement {
+    /// World distance of the view's farthest corner, or of a local light, from the world's origin.
+    fn reach_from_origin(&self) -> f64 {
+        match self {
+            Self::Orthographic { window, .. } => window.bounds().reach(),
+            Self::Perspective { position_world, .. } => position_world.length(),
+        }
+    }
+}
+
 impl ShadowView {
     /// The view of an orthographic window, for an engine whose render space begins at `origin`.
     pub(crate) fn orthographic(
@@ -171,7 +181,7 @@ impl ShadowView {
             || rounding_world <= KEPT_ROUNDING_TEXELS * finest_texel_world
     }
 
-    /// The view, if its matrices and its place can be expressed in f32.
+    /// The view, if its matrices and its place can be expressed in f32. Whether f64 suffices for the place is the fit's to say.
     pub(crate) fn checked(self) -> Result<Self, ShadowError> {
         // The square must fit as well: matrices hold reciprocals and products of these.
         let largest = f64::from(f32::MAX).sqrt();
@@ -181,13 +191,15 @@ impl ShadowView {
         let fits = extent < largest
             && self.render_reach < largest
             && small > largest.recip()
-            && f64::from(self.depth_range_world()) > largest.recip();
+            && f64::from(self.depth_range_world()) > largest.recip()
+            && self.clip_from_anchor().is_finite();
         if fits {
             Ok(self)
         } else {
             Err(ShadowError::ViewNotRepresentable {
                 extent_world: extent,
                 distance_world: self.render_reach,
+                coordinate_world: self.placement.reach_from_origin(),
             })
         }
     }

@@ -133,11 +133,15 @@ pub(crate) struct OrthoWindow {
 impl OrthoWindow {
     /// Can geometry in `bounds` leave a mark in this map?
     pub fn holds_part_of(&self, bounds: &LightBox) -> bool {
-        let as_box = LightBox {
+        self.bounds().overlaps_xy(bounds) && bounds.max.z > self.depth.far
+    }
+
+    /// The box that the view covers.
+    pub fn bounds(&self) -> LightBox {
+        LightBox {
             min: self.plane.min.extend(self.depth.far),
             max: self.plane.max().extend(self.depth.near),
-        };
-        as_box.overlaps_xy(bounds) && bounds.max.z > self.depth.far
+        }
     }
 }
 

@@ -111,12 +111,13 @@ impl Sampling {
     }
 }
 
-/// A view that nothing casts into: no receiver is inside it.
+/// A view that nothing casts into: no receiver is inside it. The anchor of a light that lies farther away than f32 reaches is
+/// as far away as f32 does.
 pub(crate) fn empty_view_uniform(layer: u32, anchor_render: Vec3) -> ShadowViewUniform {
     ShadowViewUniform {
         inner: [1.0, 1.0, 0.0, 0.0],
         layer,
-        anchor: anchor_render.to_array(),
+        anchor: anchor_render.clamp(Vec3::MIN, Vec3::MAX).to_array(),
         map_size: 1.0,
         ..ShadowViewUniform::zeroed()
     }

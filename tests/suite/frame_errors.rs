@@ -280,6 +280,7 @@ fn views_that_f32_cannot_hold() {
     let ShadowError::ViewNotRepresentable {
         extent_world,
         distance_world,
+        coordinate_world,
     } = error
     else {
         panic!("{error:?}");
@@ -289,7 +290,7 @@ fn views_that_f32_cannot_hold() {
         "{error}"
     );
     let message = format!(
-        "the fitted view must be representable in f32, got extent {extent_world} at {distance_world} from the render origin"
+        "the fitted view must be representable, got extent {extent_world} at {distance_world} from the render origin and {coordinate_world} from the world's"
     );
     assert_eq!(error.to_string(), message);
 }

@@ -21,6 +21,7 @@ mod direction_filters;
 mod emitted_wgsl;
 mod engine_wgsl;
 mod errors;
+mod far_origins;
 mod filter_parity;
 mod fit_images;
 mod frame_errors;

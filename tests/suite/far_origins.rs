@@ -1,0 +1,397 @@
+//! Origins of any finite magnitude: a frame is right, or refused. Nothing is drawn through a matrix that is no number, and
+//! nothing is reported empty that is not.
+
+use glam::{DVec3, Mat4, Vec3};
+use wgpu_shadows::{
+    Aabb, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, MeshCaster, OmniFrame, OmniLight, OmniShadow,
+    OmniShadowDescriptor, ShadowCaster, ShadowError, ShadowReport, ShadowView, ShadowViewUniform,
+    SpotFrame, SpotLight, SpotShadow, SpotShadowDescriptor, Stability, ViewStatus,
+};
+
+use crate::support::ask::{Ask, record_omni, record_spot, submitted};
+use crate::support::camera::Camera;
+use crate::support::gpu::gpu;
+use crate::support::probe::{Point, SunProbe};
+use crate::support::scene::{Mesh, Scene, Triangle, default_pipeline, occluded};
+
+/// A slab close above the floor, both in units of `unit`.
+const SLAB_HALF: f32 = 2.5;
+const SLAB_LOW: f32 = 0.4;
+const FLOOR_HALF: f32 = 4.0;
+
+fn meshes(unit: f32) -> [Mesh; 2] {
+    let slab = Mesh::cuboid(
+        Vec3::new(-SLAB_HALF, SLAB_LOW, -SLAB_HALF) * unit,
+        Vec3::new(SLAB_HALF, SLAB_LOW + 0.1, SLAB_HALF) * unit,
+    );
+    [slab, Mesh::floor(0.0, FLOOR_HALF * unit)]
+}
+
+/// All magnitudes up to where f64 steps over the scene, and some of every size beyond.
+fn origins() -> Vec<DVec3> {
+    let axes = [
+        DVec3::X,
+        DVec3::NEG_Y,
+        DVec3::Z,
+        DVec3::new(0.61, 0.73, -0.31),
+    ];
+    let exponents = (0..=24).chain([30, 50, 100, 153, 155, 200, 300]);
+    let lengths = exponents.map(|exponent| 1.7 * 10_f64.powi(exponent));
+    let mut origins = vec![DVec3::ZERO];
+    origins.extend(lengths.flat_map(|length| axes.map(|axis| axis * length)));
+    origins
+}
+
+fn assert_whole(report: &ShadowReport, what: &str) {
+    for view in &report.views {
+        let mut numbers = vec![
+            view.texel_size_world.x,
+            view.texel_size_world.y,
+            view.depth_range_world,
+            view.worst_gap_world,
+        ];
+        if let Some(slice) = view.slice {
+            numbers.extend([
+                slice.depth_near,
+                slice.depth_far,
+                slice.share_of_map,
+                slice.texels_across_picture.x,
+                slice.texels_across_picture.y,
+            ]);
+        }
+        assert!(
+            numbers.iter().all(|number| !number.is_nan()),
+            "{what}: {view:?}"
+        );
+    }
+}
+
+fn assert_finite<'a>(
+    views: impl Iterator<Item = &'a ShadowView>,
+    uniforms: &[ShadowViewUniform],
+    what: &str,
+) {
+    for view in views {
+        assert!(view.clip_from_anchor().is_finite(), "{what}: {view:?}");
+        assert!(view.clip_from_render().is_finite(), "{what}: {view:?}");
+        assert!(view.anchor_render().is_finite(), "{what}: {view:?}");
+    }
+    for uniform in uniforms {
+        let rows = [
+            uniform.plane_across,
+            uniform.plane_down,
+            uniform.plane_depth,
+            uniform.light,
+            uniform.inner,
+        ];
+        let mut numbers = rows.iter().chain(&uniform.texel_from_anchor).flatten();
+        let finite = numbers.all(|number| number.is_finite());
+        assert!(
+            finite && uniform.anchor.iter().all(|number| number.is_finite()),
+            "{what}: {uniform:?}"
+        );
+    }
+}
+
+/// Places of the floor whose truth is the same for `margin` around.
+fn settled(
+    triangles: &[Triangle],
+    unit: f64,
+    margin: f64,
+    toward_light: impl Fn(DVec3) -> DVec3,
+) -> Vec<(DVec3, bool)> {
+    let dark = |place: DVec3| occluded(triangles, place, toward_light(place), 1e-6 * unit);
+    let steps = || (-9..=9).map(|step| f64::from(step) * 0.43 * unit);
+    let places = steps().flat_map(|x| steps().map(move |z| DVec3::new(x, 0.0, z)));
+    places
+        .filter_map(|place| {
+            let here = dark(place);
+            let around = (0..8).map(|corner| {
+                let angle = f64::from(corner) * std::f64::consts::FRAC_PI_4;
+                place + DVec3::new(angle.cos(), 0.0, angle.sin()) * margin
+            });
+            let mut same = around.map(|near| dark(near) == here);
+            same.all(|same| same).then_some((place, here))
+        })
+        .collect()
+}
+
+fn assert_right(wanted: &[(DVec3, bool)], seen: &[f32], what: &str) {
+    let dark = wanted.iter().filter(|(_, dark)| *dark).count();
+    assert!(
+        dark > 0 && dark < wanted.len(),
+        "{what}: {dark} of {} dark",
+        wanted.len()
+    );
+    for ((place, dark), seen) in wanted.iter().zip(seen) {
+        let right = if *dark { 0.0 } else { 1.0 };
+        // A sum of at most 64 weights in f32.
+        assert!(
+            (seen - right).abs() < 1e-4,
+            "{what}: {seen} at {place}, dark: {dark}"
+        );
+    }
+}
+
+fn points(wanted: &[(DVec3, bool)]) -> Vec<Point> {
+    wanted
+        .iter()
+        .map(|(place, _)| Point::rounded(*place, DVec3::Y))
+        .collect()
+}
+
+/// A sun over the scene of one unit, with the coverage that a test asks for.
+struct Case {
+    unit: f32,
+    direction: Vec3,
+    map_size: u32,
+    cascades: u32,
+    stability: Stability,
+    coverage: Coverage,
+}
+
+impl Case {
+    fn coverages(unit: f32) -> [(u32, Stability, Coverage); 3] {
+        let eye = DVec3::new(0.3, 6.0, 7.0) * f64::from(unit);
+        let camera = Camera::modern(eye, DVec3::ZERO, 1.2, 1.0).view();
+        let bounds = Aabb::new(Vec3::splat(-4.5 * unit), Vec3::splat(4.5 * unit));
+        let near = camera.with_max_distance(20.0 * unit);
+        [
+            (1, Stability::Rungs, Coverage::Bounds(bounds)),
+            (2, Stability::Rungs, Coverage::Camera(camera)),
+            (1, Stability::Rotation, Coverage::Camera(near)),
+        ]
+    }
+
+    fn all() -> Vec<Self> {
+        let mut cases = Vec::new();
+        for unit in [0.125, 1.0, 1000.0] {
+            for direction in [
+                Vec3::NEG_Y,
+                Vec3::new(0.3, -1.0, 0.2),
+                Vec3::new(0.0, -1.0, 1.0),
+            ] {
+                for map_size in [4, 64, 256] {
+                    for (cascades, stability, coverage) in Self::coverages(unit) {
+                        cases.push(Self {
+                            unit,
+                            direction,
+                            map_size,
+                            cascades,
+                            stability,
+                            coverage,
+                        });
+                    }
+                }
+            }
+        }
+        cases
+    }
+
+    fn words(&self) -> String {
+        format!(
+            "unit {}, light {}, {} texels, {:?}, {} cascades",
+            self.unit, self.direction, self.map_size, self.stability, self.cascades
+        )
+    }
+}
+
+/// Longer sides of the finest and of the coarsest view's texels.
+fn texels(shadow: &DirectionalShadow) -> (f64, f64) {
+    let sides = shadow
+        .views()
+        .map(|view| f64::from(view.texel_size_world().max_element()));
+    sides.fold((f64::INFINITY, 0.0), |(finest, coarsest), side| {
+        (side.min(finest), side.max(coarsest))
+    })
+}
+
+/// In how many frames the truth was asked for.
+fn scan(case: &Case, scene: &Scene, casters: &[MeshCaster]) -> usize {
+    let gpu = gpu();
+    let descriptor = DirectionalShadowDescriptor {
+        map_size: case.map_size,
+        cascades: case.cascades,
+        stability: case.stability,
+        ..Default::default()
+    };
+    let mut shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");
+    let probe = SunProbe::new(gpu, &shadow);
+    let casters: Vec<&dyn ShadowCaster> = casters.iter().map(|caster| caster as _).collect();
+    let toward_light = -case.direction.as_dvec3().normalize();
+    let mut at_zero = (0.0, 0.0);
+    let mut judged = 0;
+    for origin in origins() {
+        let what = format!("{} at {origin}", case.words());
+        // The casters stand still in render space, so each origin puts them elsewhere in the world, of which they say nothing.
+        shadow.invalidate();
+        let frame = DirectionalFrame {
+            origin,
+            light: DirectionalLight::new(case.direction),
+            coverage: case.coverage,
+            casters: &casters,
+            receivers: &[],
+        };
+        let record = submitted(gpu, |encoder| shadow.record(&gpu.device, encoder, &frame));
+        let spacing = f64::EPSILON * origin.length();
+        let report = match record {
+            Ok(report) => report,
+            Err(ShadowError::ViewNotRepresentable { .. }) => {
+                // As `DirectionalFrame::origin` says: only from 2⁴⁷ texels on.
+                let least_of_64 = (f64::from(case.map_size) / 64.0).min(1.0);
+                let (finest, _) = at_zero;
+                assert!(spacing * 32.0 > finest * least_of_64, "{what} is refused");
+                continue;
+            }
+            Err(error) => panic!("{what}: {error}"),
+        };
+        assert_whole(&report, &what);
+        assert_finite(shadow.views(), shadow.view_uniforms(), &what);
+        assert!(
+            spacing < f64::from(FLOOR_HALF * case.unit),
+            "{what} is taken"
+        );
+        let drawn = report
+            .views
+            .iter()
+            .filter(|view| view.status != ViewStatus::Empty);
+        assert_eq!(drawn.count(), case.cascades as usize, "{what}");
+        let (_, texel) = texels(&shadow);
+        if origin == DVec3::ZERO {
+            at_zero = texels(&shadow);
+        }
+        assert!(texel <= 2.0 * at_zero.1, "{what}: {texel}");
+        // Under coarser texels no place would be settled.
+        if texel < 0.3 * f64::from(case.unit) {
+            // The default kernel reaches 2.83 texels to its corner.
+            let unit = f64::from(case.unit);
+            let wanted = settled(&scene.triangles, unit, 3.0 * texel, |_| toward_light);
+            assert_right(&wanted, &probe.ask(gpu, &points(&wanted)), &what);
+            judged += 1;
+        }
+    }
+    judged
+}
+
+#[test]
+fn suns_of_any_origin_are_right_or_refused() {
+    let gpu = gpu();
+    let pipeline = default_pipeline(gpu);
+    let mut judged = 0;
+    for case in Case::all() {
+        let meshes = meshes(case.unit);
+        let scene = Scene::new(gpu, &meshes);
+        let casters: Vec<_> = meshes
+            .iter()
+            .map(|mesh| mesh.caster(gpu, &pipeline, Mat4::IDENTITY))
+            .collect();
+        judged += scan(&case, &scene, &casters);
+    }
+    assert!(judged > 1500, "{judged}");
+}
+
+/// Where there is nothing to cast, nothing is reported and nothing refused, however far the origin.
+#[test]
+fn an_empty_world_is_empty_at_any_origin() {
+    let gpu = gpu();
+    let mut shadow = DirectionalShadow::new(&gpu.device, &Default::default()).expect("a valid sun");
+    for origin in origins() {
+        for (_, _, coverage) in Case::coverages(1.0) {
+            let frame = DirectionalFrame {
+                origin,
+                light: DirectionalLight::new(Vec3::new(0.3, -1.0, 0.2)),
+                coverage,
+                casters: &[],
+                receivers: &[Aabb::new(Vec3::splat(-1.0), Vec3::splat(1.0))],
+            };
+            let record = submitted(gpu, |encoder| shadow.record(&gpu.device, encoder, &frame));
+            let report = record.expect("nothing to refuse");
+            assert_eq!(report.views[0].status, ViewStatus::Empty);
+            assert_whole(&report, &format!("{origin}"));
+        }
+    }
+}
+
+/// Lamps three units above the floor, as far as the spacing of their f64 place allows; and lamps as far away as their origin.
+#[test]
+fn lamps_of_any_origin_are_right_or_refused() {
+    let gpu = gpu();
+    let meshes = meshes(1.0);
+    let scene = Scene::new(gpu, &meshes);
+    let casters = scene.list();
+    let omni = OmniShadowDescriptor {
+        map_size: 256,
+        ..Default::default()
+    };
+    let mut omni = OmniShadow::new(&gpu.device, &omni).expect("a valid lamp");
+    let spot = SpotShadowDescriptor {
+        map_size: 256,
+        ..Default::default()
+    };
+    let mut spot = SpotShadow::new(&gpu.device, &spot).expect("a valid lamp");
+    let asks = [omni.source(), spot.source()].map(|source| Ask::light(gpu, source));
+    let mut right = 0;
+    for place in origins() {
+        for (origin, position_world) in [(place, place + DVec3::Y * 3.0), (DVec3::ZERO, place)] {
+            let light = position_world - origin;
+            omni.invalidate();
+            spot.invalidate();
+            let omni_frame = OmniFrame {
+                origin,
+                light: OmniLight {
+                    position_world,
+                    range: f32::INFINITY,
+                },
+                camera: None,
+                casters: &casters,
+                receivers: &[],
+            };
+            let spot_frame = SpotFrame {
+                origin,
+                light: SpotLight {
+                    position_world,
+                    direction: Vec3::NEG_Y,
+                    outer_angle_radians: 1.1,
+                    range: f32::INFINITY,
+                },
+                camera: None,
+                casters: &casters,
+                receivers: &[],
+            };
+            let records = [
+                record_omni(gpu, &mut omni, &omni_frame),
+                record_spot(gpu, &mut spot, &spot_frame),
+            ];
+            for (index, record) in records.into_iter().enumerate() {
+                let what = format!("lamp {index} at {position_world}, origin {origin}");
+                let report = match record {
+                    Ok(report) => report,
+                    Err(ShadowError::ViewNotRepresentable { .. }) => {
+                        assert!(light.length() > 1e17, "{what} is refused");
+                        continue;
+                    }
+                    Err(error) => panic!("{what}: {error}"),
+                };
+                assert_whole(&report, &what);
+                if index == 0 {
+                    assert_finite(omni.views(), omni.view_uniforms(), &what);
+                } else {
+                    assert_finite(spot.views(), spot.view_uniforms(), &what);
+                }
+                // Anywhere over the slab, where the shadow that it casts leaves some of the floor lit.
+                if light.distance(DVec3::Y * 3.0) > 0.5 {
+                    continue;
+                }
+                let views = report.views.iter();
+                let texel = views
+                    .map(|view| f64::from(view.texel_size_world.max_element()))
+                    .fold(0.0, f64::max);
+                let wanted = settled(&scene.triangles, 1.0, 3.0 * texel, |from| light - from);
+                assert_right(&wanted, &asks[index].points(gpu, &points(&wanted)), &what);
+                right += 1;
+            }
+        }
+    }
+    assert!(right > 100, "{right}");
+}
