@@ -21,7 +21,8 @@ pub struct SliceReport {
     /// against this the rest lies behind the camera or beside its picture.
     pub share_of_map: f32,
     /// Texels across the height of the picture, on a surface that faces both light and camera: the fewest (coarser axis, nearest
-    /// depth) and the most (finer axis, farthest depth).
+    /// depth) and the most (finer axis, farthest depth). Infinite where the picture has no end at that depth, as under a
+    /// projection that leans.
     pub texels_across_picture: Vec2,
 }
 

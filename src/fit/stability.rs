@@ -108,10 +108,16 @@ impl PictureCorners {
 }
 
 impl CameraFrustum {
-    /// World height of the picture at a depth along the view.
+    /// World height of the picture at a depth along the view; infinite where its corners lie at infinity, as a projection that
+    /// leans far enough has it.
     pub fn picture_height(&self, depth: f64) -> f64 {
         let [bottom, _, top, _] = self.corners.at(depth);
-        bottom.distance(top)
+        let height = bottom.distance(top);
+        if height.is_nan() {
+            f64::INFINITY
+        } else {
+            height
+        }
     }
 
     /// A sphere that holds the slice between two depths along the view.

@@ -11,6 +11,7 @@ use crate::support::camera::Camera;
 use crate::support::gpu::gpu;
 use crate::support::probe::{Point, SunProbe, record};
 use crate::support::random::Random;
+use crate::support::report::assert_whole;
 use crate::support::scene::{Mesh, default_pipeline};
 use crate::support::watched::Watched;
 
@@ -109,6 +110,9 @@ fn no_frame_breaks_a_sun() {
             &mut refused
         };
         *count += 1;
+        if let Ok(report) = result {
+            assert_whole(report, &format!("case {case}"));
+        }
         gpu.submit(encoder);
         let points = [Point::new(numbers.vector(), numbers.vector())];
         let seen = probe.ask(gpu, &points)[0];

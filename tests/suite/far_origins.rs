@@ -5,14 +5,15 @@ use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
     Aabb, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, MeshCaster, OmniFrame, OmniLight, OmniShadow,
-    OmniShadowDescriptor, ShadowCaster, ShadowError, ShadowReport, ShadowView, ShadowViewUniform,
-    SpotFrame, SpotLight, SpotShadow, SpotShadowDescriptor, Stability, ViewStatus,
+    OmniShadowDescriptor, ShadowCaster, ShadowError, ShadowView, ShadowViewUniform, SpotFrame,
+    SpotLight, SpotShadow, SpotShadowDescriptor, Stability, ViewStatus,
 };
 
 use crate::support::ask::{Ask, record_omni, record_spot, submitted};
 use crate::support::camera::Camera;
 use crate::support::gpu::gpu;
 use crate::support::probe::{Point, SunProbe};
+use crate::support::report::assert_whole;
 use crate::support::scene::{Mesh, Scene, Triangle, default_pipeline, occluded};
 
 /// A slab close above the floor, both in units of `unit`.
@@ -41,30 +42,6 @@ fn origins() -> Vec<DVec3> {
     let mut origins = vec![DVec3::ZERO];
     origins.extend(lengths.flat_map(|length| axes.map(|axis| axis * length)));
     origins
-}
-
-fn assert_whole(report: &ShadowReport, what: &str) {
-    for view in &report.views {
-        let mut numbers = vec![
-            view.texel_size_world.x,
-            view.texel_size_world.y,
-            view.depth_range_world,
-            view.worst_gap_world,
-        ];
-        if let Some(slice) = view.slice {
-            numbers.extend([
-                slice.depth_near,
-                slice.depth_far,
-                slice.share_of_map,
-                slice.texels_across_picture.x,
-                slice.texels_across_picture.y,
-            ]);
-        }
-        assert!(
-            numbers.iter().all(|number| !number.is_nan()),
-            "{what}: {view:?}"
-        );
-    }
 }
 
 fn assert_finite<'a>(

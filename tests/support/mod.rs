@@ -13,6 +13,7 @@ pub mod probe;
 pub mod random;
 pub mod random_scene;
 pub mod readback;
+pub mod report;
 pub mod rounding;
 pub mod scene;
 pub mod table;

@@ -10,6 +10,7 @@ use super::stage::{Sun, boxes, level, meshes, scene};
 use super::table;
 use crate::support::camera::{Camera, Lens, Pose};
 use crate::support::gpu::gpu;
+use crate::support::report::assert_whole;
 
 /// Every lens with its name, and whether it is a camera that engines have.
 fn lenses() -> Vec<(String, Lens, bool)> {
@@ -86,7 +87,7 @@ fn any_lens_is_fitted_or_refused() {
             };
             let mut encoder = gpu.encoder();
             let result = sun.shadow.record(&gpu.device, &mut encoder, &frame);
-            let result = result.map(|_| ());
+            let result = result.map(|report| assert_whole(report, &name.to_string()));
             gpu.submit(encoder);
             let seen = sun.ask(&points);
             match result {

@@ -22,6 +22,7 @@ use super::stage::caster;
 use crate::support::ask::{Ask, submitted};
 use crate::support::gpu::gpu;
 use crate::support::probe::Point;
+use crate::support::report::assert_whole;
 use crate::support::scene::Mesh;
 use crate::support::watched::Watched;
 
@@ -245,7 +246,9 @@ impl Lights {
                 submitted(gpu, |encoder| self.lamps.record(device, encoder, &frame))
             }
         };
-        result.map(|_| ()).map_err(|error| error.to_string())
+        result
+            .map(|report| assert_whole(&report, &format!("kind {kind}")))
+            .map_err(|error| error.to_string())
     }
 
     fn ask(&self, kind: usize, points: &[Point]) -> Vec<f32> {

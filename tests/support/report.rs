@@ -1,0 +1,31 @@
+//! What every report must be.
+
+use wgpu_shadows::ShadowReport;
+
+/// No figure of a report is NaN, and shares are shares.
+pub fn assert_whole(report: &ShadowReport, what: &str) {
+    for view in &report.views {
+        let mut numbers = vec![
+            view.texel_size_world.x,
+            view.texel_size_world.y,
+            view.depth_range_world,
+            view.worst_gap_world,
+        ];
+        if let Some(slice) = view.slice {
+            assert!(
+                (0.0..=1.0).contains(&slice.share_of_map),
+                "{what}: {view:?}"
+            );
+            numbers.extend([
+                slice.depth_near,
+                slice.depth_far,
+                slice.texels_across_picture.x,
+                slice.texels_across_picture.y,
+            ]);
+        }
+        assert!(
+            numbers.iter().all(|number| !number.is_nan()),
+            "{what}: {view:?}"
+        );
+    }
+}
