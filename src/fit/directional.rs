@@ -137,7 +137,7 @@ fn checked_spacing(
     required: &LightBox,
 ) -> Result<Spacing, ShadowError> {
     let spacing = Spacing::around(input.origin, required);
-    let extent = match slice {
+    let extent = || match slice {
         // Not what is seen: that may be a corner of something, which needs no finer texels than the rest of the picture.
         Some(slice) if limits.stability == Stability::Rungs => {
             let (depth_near, depth_far) = slice.between;

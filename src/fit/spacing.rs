@@ -84,18 +84,24 @@ impl Spacing {
         (min - growth, max + growth)
     }
 
-    /// The spacing, if it is fine enough for a map of `map_size` texels over `extent` world units, or for `texel_floor`, the
-    /// finest texel that render space can tell apart, where that is coarser; `distance` is from the render origin, for the error.
+    /// Returns the spacing if it is fine enough for a map of `map_size` texels over `extent` world units, or for `texel_floor`,
+    /// the finest texel that render space can tell apart, where that is coarser; `distance` is from the render origin, for the
+    /// error. The extent is asked for only where the floor does not settle the matter, as it does for all but astronomical
+    /// coordinates.
     pub fn checked(
         self,
-        extent: f64,
+        extent: impl FnOnce() -> f64,
         map_size: u32,
         texel_floor: f64,
         distance: f64,
     ) -> Result<Self, ShadowError> {
+        if self.finest_texel() <= texel_floor {
+            return Ok(self);
+        }
+        let extent = extent();
         let texel = extent / f64::from(map_size.max(LEAST_TEXELS));
         // Coordinates that overflow are no numbers, and fail this.
-        if self.finest_texel() <= texel.max(texel_floor) {
+        if self.finest_texel() <= texel {
             Ok(self)
         } else {
             Err(ShadowError::ViewNotRepresentable {
