@@ -2,17 +2,17 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::cast::{CasterAnswers, FrameCasters, ShadowCaster, ViewDraws};
+use crate::cast::{FrameCasters, ViewDraws};
 use crate::check;
 use crate::fit::{
-    CameraFrustum, Column, DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes,
-    MAX_CASCADES, Region, Spacing,
+    Column, DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, MAX_CASCADES, Region,
+    Spacing,
 };
 use crate::light_maps::{LayerBase, LightMaps, LightMapsDescriptor, MapsFrame, light_maps_getters};
 use crate::receive::{Sampling, Selection};
 use crate::report::ShadowReport;
 use crate::{
-    Aabb, Bias, CameraView, CascadeSplit, DepthFormat, Filter, ShadowError, ShadowView, Stability,
+    Bias, CascadeSplit, DepthFormat, Filter, ShadowError, ShadowFrame, ShadowView, Stability,
 };
 
 /// What a [`DirectionalShadow`] is made of.
@@ -100,34 +100,14 @@ impl DirectionalLight {
             up: Vec3::Y,
         }
     }
-}
 
-/// What the maps of a directional light are to cover.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Coverage {
-    /// A fixed box in render space, held by the first cascade alone, as in the textbook. Surfaces outside are lit.
-    Bounds(Aabb),
-    /// What a camera sees of casters and receivers.
-    Camera(CameraView),
-}
-
-/// What a directional light needs to know of a frame.
-#[derive(Clone, Copy)]
-pub struct DirectionalFrame<'a> {
-    /// World position of render space's origin, f64. Zero unless the engine renders relative to its camera. Texels keep their
-    /// places in the world, so f64 must tell them apart there: with texels of `t` units, in maps of 64 or more a side, a frame is
-    /// accepted up to at least `2⁴⁷ t` units from the world's origin, 1.4·10¹² for a centimetre. Some hundred times as far it is
-    /// [`ShadowError::ViewNotRepresentable`].
-    pub origin: DVec3,
-    /// The light.
-    pub light: DirectionalLight,
-    /// What to cover.
-    pub coverage: Coverage,
-    /// Everything that may cast; all of it receives, too.
-    pub casters: &'a [&'a dyn ShadowCaster],
-    /// Bounds in render space of surfaces that only receive.
-    pub receivers: &'a [Aabb],
+    /// Returns the light's axes if its vectors have directions.
+    fn axes(&self) -> Result<LightAxes, ShadowError> {
+        let (direction, up) = (self.direction.as_dvec3(), self.up.as_dvec3());
+        check::direction("DirectionalLight::direction", direction)?;
+        check::direction("DirectionalLight::up", up)?;
+        Ok(LightAxes::new(direction, up))
+    }
 }
 
 /// Shadows of a directional light: a depth texture with one layer per cascade, its uniforms, and what is needed to fill them.
@@ -136,7 +116,6 @@ pub struct DirectionalShadow {
     maps: LightMaps,
     limits: FitLimits,
     fit: DirectionalFit,
-    answers: CasterAnswers,
     scratch: FitScratch,
 }
 
@@ -203,7 +182,6 @@ impl DirectionalShadow {
                 stability: descriptor.stability,
             },
             fit: DirectionalFit::default(),
-            answers: CasterAnswers::default(),
             scratch: FitScratch::default(),
         })
     }
@@ -218,63 +196,49 @@ impl DirectionalShadow {
     /// maps remain.
     pub fn record(
         &mut self,
-        device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
-        frame: &DirectionalFrame<'_>,
+        frame: &ShadowFrame<'_>,
+        light: &DirectionalLight,
     ) -> Result<&ShadowReport, ShadowError> {
-        let axes = check_light(frame)?;
-        let frustum;
-        let region = match frame.coverage {
-            Coverage::Bounds(bounds) => {
-                check::bounds("DirectionalFrame::coverage", 0, &bounds)?;
-                Region::Bounds(bounds)
-            }
-            Coverage::Camera(camera) => {
-                frustum = self.frustum(&camera)?;
-                Region::Camera(&frustum)
-            }
-        };
-        let mut answers = std::mem::take(&mut self.answers);
-        let casters = answers.ask("DirectionalFrame::casters", frame.casters)?;
-        check::receiver_bounds("DirectionalFrame::receivers", frame.receivers)?;
+        let axes = light.axes()?;
+        self.check_distances(frame)?;
         let input = FitInput {
             axes,
             origin: frame.origin,
-            region,
-            casters: casters.bounds,
+            region: frame.region,
+            casters: frame.casters.bounds,
             receivers: frame.receivers,
         };
         let fit = self.fit.fit(&input, &self.limits, &mut self.scratch)?;
-        let views = self.cull(&fit, &axes, frame.origin, &casters)?;
+        let views = self.cull(&fit, &axes, frame.origin, &frame.casters)?;
         let layers: [_; MAX_CASCADES] =
             std::array::from_fn(|layer| LayerBase::directional(layer as u32, fit.slices[layer]));
         let maps_frame = MapsFrame {
             views,
             layers: &layers[..self.limits.cascades],
             viewer_render: None,
-            casters,
+            casters: frame.casters,
         };
-        let report = self.maps.record(device, encoder, maps_frame)?;
+        let report = self.maps.record(encoder, maps_frame)?;
         self.fit = fit;
-        self.answers = answers;
         Ok(report)
     }
 
-    fn frustum(&self, camera: &CameraView) -> Result<CameraFrustum, ShadowError> {
-        const DISTANCE: &str = "DirectionalFrame::coverage.max_distance";
-        let frustum = camera.frustum(
-            "DirectionalFrame::coverage.view_from_render",
-            "DirectionalFrame::coverage.clip_from_view",
-            DISTANCE,
-        )?;
-        let (near, far) = frustum.depth_range();
-        check::in_range(
-            DISTANCE,
-            "finite under Stability::Rotation, where the projection has no far plane",
-            self.limits.stability == Stability::Rungs || (near.is_finite() && far.is_finite()),
-            camera.max_distance,
-        )?;
-        Ok(frustum)
+    /// Checks that the slices of all cameras have an end, where the fit goes by the whole of them.
+    fn check_distances(&self, frame: &ShadowFrame<'_>) -> Result<(), ShadowError> {
+        let Region::Cameras(cameras) = frame.region else {
+            return Ok(());
+        };
+        for camera in cameras {
+            let (near, far) = camera.depth_range();
+            check::in_range(
+                "CameraView::max_distance",
+                "finite under Stability::Rotation, where the projection has no far plane",
+                self.limits.stability == Stability::Rungs || (near.is_finite() && far.is_finite()),
+                camera.max_distance(),
+            )?;
+        }
+        Ok(())
     }
 
     /// The cascades that something casts into, with the casters of each.
@@ -307,12 +271,3 @@ impl DirectionalShadow {
 }
 
 light_maps_getters!(DirectionalShadow, "cascade");
-
-fn check_light(frame: &DirectionalFrame<'_>) -> Result<LightAxes, ShadowError> {
-    check::finite_vector("DirectionalFrame::origin", frame.origin)?;
-    let direction = frame.light.direction.as_dvec3();
-    let up = frame.light.up.as_dvec3();
-    check::direction("DirectionalFrame::light.direction", direction)?;
-    check::direction("DirectionalFrame::light.up", up)?;
-    Ok(LightAxes::new(direction, up))
-}

@@ -79,10 +79,12 @@ pub enum ShadowError {
         value: String,
     },
     /// A camera matrix that describes no volume: not finite, or not invertible.
-    #[error("{field} must be finite and invertible, got {value}")]
+    #[error("{field} of camera {camera} must be finite and invertible, got {value}")]
     CameraMatrix {
         /// Path of the field.
         field: &'static str,
+        /// Position of the camera in the frame's list.
+        camera: usize,
         /// The matrix, formatted.
         value: String,
     },
@@ -161,9 +163,6 @@ pub enum ShadowError {
         /// Why the device did not make it.
         refusal: DeviceRefusal,
     },
-    /// A frame on another device than the light's maps are on.
-    #[error("device must be the one that the light was made on")]
-    OtherDevice,
 }
 
 /// What [`CasterPipeline::new`](crate::CasterPipeline::new) and [`MeshCaster::new`](crate::MeshCaster::new) refuse.

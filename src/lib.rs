@@ -78,6 +78,7 @@ mod omni;
 mod pool;
 mod receive;
 mod report;
+mod scene;
 pub mod shader;
 mod spot;
 
@@ -88,19 +89,18 @@ pub use cast::{
     is_closed_solid,
 };
 pub use debug_view::{DebugPicture, DebugView};
-pub use directional::{
-    Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-};
+pub use directional::{DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor};
 pub use error::{BindingsError, CasterError, DebugViewError, DeviceRefusal, ShadowError};
 pub use fit::{CameraView, CascadeSplit, ShadowView, SliceReport, Stability};
-pub use omni::{OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor};
-pub use pool::{OmniShadowPool, PoolDescriptor, PoolFrame, PoolLight, ShadowSlot, SpotShadowPool};
+pub use omni::{OmniLight, OmniShadow, OmniShadowDescriptor};
+pub use pool::{OmniShadowPool, PoolDescriptor, PoolLight, ShadowSlot, SpotShadowPool};
 pub use receive::{
     Bias, Filter, ShadowBindings, ShadowBindingsDescriptor, ShadowSource, ShadowViewUniform,
     reference,
 };
 pub use report::{ShadowReport, ViewReport, ViewStatus};
-pub use spot::{SpotFrame, SpotLight, SpotShadow, SpotShadowDescriptor};
+pub use scene::{Coverage, ShadowFrame, ShadowFrameDescriptor, ShadowScene};
+pub use spot::{SpotLight, SpotShadow, SpotShadowDescriptor};
 
 #[cfg(doc)]
 #[doc = include_str!("../doc/hard_cases.md")]

@@ -203,7 +203,6 @@ impl LightMaps {
     /// Uploads and records a frame. On an error nothing has been recorded and nothing has changed.
     pub fn record(
         &mut self,
-        device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
         frame: MapsFrame<'_>,
     ) -> Result<&ShadowReport, ShadowError> {
@@ -213,9 +212,7 @@ impl LightMaps {
             viewer_render,
             casters,
         } = frame;
-        if *device != self.device {
-            return Err(ShadowError::OtherDevice);
-        }
+        let device = &self.device.clone();
         let prepared = self
             .recorder
             .prepare(device, &self.map, &mut views, &casters)?;

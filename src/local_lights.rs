@@ -3,17 +3,15 @@
 
 use glam::DVec3;
 
-use crate::cast::{CasterAnswers, FrameCasters, ShadowCaster, ViewDraws};
-use crate::check;
-use crate::fit::{CameraFrustum, LightAxes, LocalFit, LocalInput, MAX_LOCAL_VIEWS, Reached};
+use crate::cast::ViewDraws;
+use crate::fit::{LightAxes, LocalFit, LocalInput, MAX_LOCAL_VIEWS, Reached};
 use crate::light_maps::{LayerBase, LightMaps, MapsFrame};
-use crate::{Aabb, CameraView, ShadowError, ShadowReport, ShadowView};
+use crate::{ShadowError, ShadowFrame, ShadowReport, ShadowView};
 
 /// State of the lights in the slots of one set of maps.
 #[derive(Debug)]
 pub(crate) struct LocalLights {
     slots: Vec<SlotState>,
-    answers: CasterAnswers,
     /// Empty between frames; kept for their memory.
     candidates: Vec<Candidate>,
     layers: Vec<LayerBase>,
@@ -49,28 +47,6 @@ pub(crate) struct LocalPlacement {
     pub importance: f32,
 }
 
-/// A frame of local lights.
-pub(crate) struct LocalFrame<'a> {
-    pub origin: DVec3,
-    pub lights: &'a [LocalPlacement],
-    pub camera: Option<&'a CameraView>,
-    pub casters: &'a [&'a dyn ShadowCaster],
-    pub receivers: &'a [Aabb],
-    /// Most views to draw.
-    pub max_views: Option<u32>,
-    pub fields: &'static LocalFields,
-}
-
-/// Paths of a light's fields, for its errors.
-pub(crate) struct LocalFields {
-    pub origin: &'static str,
-    pub position: &'static str,
-    pub range: &'static str,
-    pub camera: [&'static str; 3],
-    pub casters: &'static str,
-    pub receivers: &'static str,
-}
-
 /// A light's new fit and what it would draw.
 #[derive(Debug)]
 struct Candidate {
@@ -91,7 +67,6 @@ impl LocalLights {
     pub fn new(capacity: u32) -> Self {
         Self {
             slots: vec![SlotState::default(); capacity as usize],
-            answers: CasterAnswers::default(),
             candidates: Vec::new(),
             layers: Vec::new(),
             reached: Reached::default(),
@@ -107,36 +82,24 @@ impl LocalLights {
     pub fn record<'m>(
         &mut self,
         maps: &'m mut LightMaps,
-        device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
-        frame: &LocalFrame<'_>,
+        frame: &ShadowFrame<'_>,
+        lights: &[LocalPlacement],
+        max_views: Option<u32>,
     ) -> Result<&'m ShadowReport, ShadowError> {
-        let fields = frame.fields;
-        check::finite_vector(fields.origin, frame.origin)?;
-        for light in frame.lights {
-            check::finite_vector(fields.position, light.position_world)?;
-            check::above_zero(fields.range, light.range)?;
-        }
-        let [view_field, clip_field, distance_field] = fields.camera;
-        let camera = frame
-            .camera
-            .map(|camera| camera.frustum(view_field, clip_field, distance_field))
-            .transpose()?;
-        let mut answers = std::mem::take(&mut self.answers);
-        let casters = answers.ask(fields.casters, frame.casters)?;
-        check::receiver_bounds(fields.receivers, frame.receivers)?;
-
         let mut candidates = std::mem::take(&mut self.candidates);
         candidates.clear();
-        for light in frame.lights {
-            candidates.push(self.candidate(maps, frame, light, camera.as_ref(), &casters)?);
+        for light in lights {
+            candidates.push(self.candidate(maps, frame, light)?);
         }
-        self.choose(frame, &mut candidates);
+        if let Some(max_views) = max_views {
+            self.choose(lights, max_views, &mut candidates);
+        }
 
         let mut layers = std::mem::take(&mut self.layers);
         layers.clear();
         let mut views = maps.spare_views();
-        for (light, candidate) in frame.lights.iter().zip(&mut candidates) {
+        for (light, candidate) in lights.iter().zip(&mut candidates) {
             let first_layer = light.slot * light.view_count;
             let state = &self.slots[light.slot as usize];
             // A light that is put off is asked where it stood when its map was drawn.
@@ -170,13 +133,12 @@ impl LocalLights {
         let maps_frame = MapsFrame {
             layers: &layers,
             views,
-            viewer_render: camera.as_ref().map(CameraFrustum::eye_render),
-            casters,
+            viewer_render: frame.viewer_render(),
+            casters: frame.casters,
         };
-        let report = maps.record(device, encoder, maps_frame)?;
-        self.answers = answers;
+        let report = maps.record(encoder, maps_frame)?;
         self.layers = layers;
-        for (light, candidate) in frame.lights.iter().zip(candidates.drain(..)) {
+        for (light, candidate) in lights.iter().zip(candidates.drain(..)) {
             let state = &mut self.slots[light.slot as usize];
             if candidate.refreshed {
                 *state = SlotState {
@@ -198,10 +160,8 @@ impl LocalLights {
     fn candidate(
         &mut self,
         maps: &mut LightMaps,
-        frame: &LocalFrame<'_>,
+        frame: &ShadowFrame<'_>,
         light: &LocalPlacement,
-        camera: Option<&CameraFrustum>,
-        casters: &FrameCasters<'_>,
     ) -> Result<Candidate, ShadowError> {
         let axes = &light.axes[..light.view_count as usize];
         let input = LocalInput {
@@ -213,8 +173,8 @@ impl LocalLights {
             caster_tangent: light.tangent
                 * border(maps.map_size(), maps.sampling().border_texels()),
             looks_around: maps.sampling().filter.directions().is_some(),
-            camera,
-            casters: casters.bounds,
+            seen: frame.seen,
+            casters: frame.casters.bounds,
             receivers: frame.receivers,
             map_size: maps.map_size(),
             margin_texels: maps.sampling().margin_texels(),
@@ -241,7 +201,7 @@ impl LocalLights {
             );
             let view = view.checked()?;
             let view_draws = ViewDraws::new(view, drawn);
-            needed += maps.passes(&view_draws, casters);
+            needed += maps.passes(&view_draws, &frame.casters);
             draws[index] = Some(view_draws);
             views[index] = Some(view);
         }
@@ -261,14 +221,11 @@ impl LocalLights {
     /// counts for no less than a share of the frame's greatest. With `n` lights, the one of weight `w` beside a greatest of `W`
     /// then waits at most `(n - 1) W / w + n` frames: once its product exceeds `(n - 1) W`, only those go before it that have
     /// waited for `n - 1` frames, and that is each of the others once.
-    fn choose(&self, frame: &LocalFrame<'_>, candidates: &mut [Candidate]) {
-        let Some(max_views) = frame.max_views else {
-            return;
-        };
-        let importances = frame.lights.iter().map(|light| f64::from(light.importance));
+    fn choose(&self, lights: &[LocalPlacement], max_views: u32, candidates: &mut [Candidate]) {
+        let importances = lights.iter().map(|light| f64::from(light.importance));
         let least = importances.fold(0.0, f64::max) * LEAST_SHARE_OF_IMPORTANCE;
         let urgency = |index: usize| {
-            let light = &frame.lights[index];
+            let light = &lights[index];
             let weight = match f64::from(light.importance) {
                 importance if importance > 0.0 => importance.max(least),
                 _ => 0.0,

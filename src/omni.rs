@@ -2,13 +2,12 @@
 
 use glam::DVec3;
 
-use crate::cast::ShadowCaster;
 use crate::check;
 use crate::fit::LightAxes;
 use crate::light_maps::{LightMaps, LightMapsDescriptor, light_maps_getters};
-use crate::local_lights::{LocalFields, LocalFrame, LocalLights, LocalPlacement};
+use crate::local_lights::{LocalLights, LocalPlacement};
 use crate::receive::{Sampling, Selection};
-use crate::{Aabb, Bias, CameraView, Filter, ShadowError, ShadowReport};
+use crate::{Bias, Filter, ShadowError, ShadowFrame, ShadowReport};
 
 /// What an [`OmniShadow`] is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,21 +44,6 @@ pub struct OmniLight {
     pub range: f32,
 }
 
-/// What a point light needs to know of a frame.
-#[derive(Clone, Copy)]
-pub struct OmniFrame<'a> {
-    /// World position of render space's origin, f64. Zero unless the engine renders relative to its camera.
-    pub origin: DVec3,
-    /// The light.
-    pub light: OmniLight,
-    /// The camera whose picture the shadows are for: what it does not see needs no map. None for all of space.
-    pub camera: Option<CameraView>,
-    /// Everything that may cast; all of it receives, too.
-    pub casters: &'a [&'a dyn ShadowCaster],
-    /// Bounds in render space of surfaces that only receive.
-    pub receivers: &'a [Aabb],
-}
-
 /// Shadows of a point light: six perspective faces as layers of one depth texture.
 ///
 /// # One pass or a pass for each face
@@ -84,19 +68,6 @@ pub struct OmniShadow {
     maps: LightMaps,
     lights: LocalLights,
 }
-
-const FIELDS: LocalFields = LocalFields {
-    origin: "OmniFrame::origin",
-    position: "OmniFrame::light.position_world",
-    range: "OmniFrame::light.range",
-    camera: [
-        "OmniFrame::camera.view_from_render",
-        "OmniFrame::camera.clip_from_view",
-        "OmniFrame::camera.max_distance",
-    ],
-    casters: "OmniFrame::casters",
-    receivers: "OmniFrame::receivers",
-};
 
 impl OmniShadow {
     /// Makes texture and buffers. Until the first [`OmniShadow::record`], everything is lit.
@@ -139,31 +110,26 @@ impl OmniShadow {
     /// good maps remain.
     pub fn record(
         &mut self,
-        device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
-        frame: &OmniFrame<'_>,
+        frame: &ShadowFrame<'_>,
+        light: &OmniLight,
     ) -> Result<&ShadowReport, ShadowError> {
-        self.lights.record(
-            &mut self.maps,
-            device,
-            encoder,
-            &LocalFrame {
-                origin: frame.origin,
-                lights: &[frame.light.placement(0, 1.0)],
-                camera: frame.camera.as_ref(),
-                casters: frame.casters,
-                receivers: frame.receivers,
-                max_views: None,
-                fields: &FIELDS,
-            },
-        )
+        let light = light.placement(0, 1.0)?;
+        self.lights
+            .record(&mut self.maps, encoder, frame, &[light], None)
     }
 }
 
 impl OmniLight {
-    /// The light in a slot of its maps.
-    pub(crate) fn placement(&self, slot: u32, importance: f32) -> LocalPlacement {
-        LocalPlacement {
+    /// Returns the light in a slot of its maps if its numbers are sound.
+    pub(crate) fn placement(
+        &self,
+        slot: u32,
+        importance: f32,
+    ) -> Result<LocalPlacement, ShadowError> {
+        check::finite_vector("OmniLight::position_world", self.position_world)?;
+        check::above_zero("OmniLight::range", self.range)?;
+        Ok(LocalPlacement {
             slot,
             position_world: self.position_world,
             range: self.range,
@@ -172,7 +138,7 @@ impl OmniLight {
             tangent: 1.0,
             cone_cosine: -2.0,
             importance,
-        }
+        })
     }
 }
 

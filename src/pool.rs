@@ -2,14 +2,11 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use glam::DVec3;
-
-use crate::cast::ShadowCaster;
 use crate::check;
 use crate::light_maps::{LightMaps, LightMapsDescriptor, light_maps_getters};
-use crate::local_lights::{LocalFields, LocalFrame, LocalLights, LocalPlacement};
+use crate::local_lights::{LocalLights, LocalPlacement};
 use crate::receive::{Sampling, Selection, ShadowViewUniform};
-use crate::{Aabb, Bias, CameraView, Filter, OmniLight, ShadowError, ShadowReport, SpotLight};
+use crate::{Bias, Filter, OmniLight, ShadowError, ShadowFrame, ShadowReport, SpotLight};
 
 /// What a pool is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,26 +66,6 @@ pub struct PoolLight<L> {
     pub importance: f32,
 }
 
-/// What a pool needs to know of a frame. Lights of the pool that are not listed are lit everywhere.
-#[derive(Clone, Copy)]
-pub struct PoolFrame<'a, L> {
-    /// World position of render space's origin, f64. Zero unless the engine renders relative to its camera.
-    pub origin: DVec3,
-    /// The lights.
-    pub lights: &'a [PoolLight<L>],
-    /// The camera whose picture the shadows are for: what it does not see needs no map. None for all of space.
-    pub camera: Option<CameraView>,
-    /// Everything that may cast; all of it receives, too.
-    pub casters: &'a [&'a dyn ShadowCaster],
-    /// Bounds in render space of surfaces that only receive.
-    pub receivers: &'a [Aabb],
-    /// Most depth passes (over `map_size`² texels each) to draw in this frame; none for no limit. A view is one pass, or two
-    /// where the layer that is kept of what stands still is drawn anew. The most important lights are refreshed first, and at
-    /// least one is, whatever it takes; the others show their last map and are reported as deferred. A light that has never
-    /// been drawn, or not since `invalidate`, is lit until its turn.
-    pub max_views: Option<u32>,
-}
-
 /// Slots of a pool and the tickets they are given out under.
 #[derive(Debug)]
 struct Slots {
@@ -127,16 +104,16 @@ impl Slots {
         self.seen.clear();
         self.seen.resize(self.tickets.len(), false);
         for light in lights {
-            self.check("PoolFrame::lights.slot", light.slot)?;
+            self.check("PoolLight::slot", light.slot)?;
             let index = light.slot.index;
             if std::mem::replace(&mut self.seen[index as usize], true) {
                 return Err(ShadowError::DuplicateSlot {
-                    field: "PoolFrame::lights.slot",
+                    field: "PoolLight::slot",
                     index,
                 });
             }
             check::in_range(
-                "PoolFrame::lights.importance",
+                "PoolLight::importance",
                 "finite and at least 0",
                 light.importance >= 0.0 && light.importance.is_finite(),
                 light.importance,
@@ -145,19 +122,6 @@ impl Slots {
         Ok(())
     }
 }
-
-const FIELDS: LocalFields = LocalFields {
-    origin: "PoolFrame::origin",
-    position: "PoolFrame::lights.position_world",
-    range: "PoolFrame::lights.range",
-    camera: [
-        "PoolFrame::camera.view_from_render",
-        "PoolFrame::camera.clip_from_view",
-        "PoolFrame::camera.max_distance",
-    ],
-    casters: "PoolFrame::casters",
-    receivers: "PoolFrame::receivers",
-};
 
 fn check_descriptor(
     device: &wgpu::Device,
@@ -202,8 +166,7 @@ fn check_descriptor(
 /// The two pools differ in their lights alone.
 macro_rules! pool {
     (
-        $(#[$doc:meta])* $pool:ident, $light:ty, $views:literal, $selection:expr, $filter_check:path,
-        |$entry:ident| $placement:expr
+        $(#[$doc:meta])* $pool:ident, $light:ty, $views:literal, $selection:expr, $filter_check:path
     ) => {
         $(#[$doc])*
         #[derive(Debug)]
@@ -272,7 +235,13 @@ macro_rules! pool {
             }
 
             /// Fits the lights to the frame, culls, writes the uniforms and records the depth passes that are needed and that
-            /// the budget allows. A light in which nothing changed costs no pass.
+            /// the budget allows. A light in which nothing changed costs no pass. Lights of the pool that are not listed are lit
+            /// everywhere.
+            ///
+            /// `max_views` is the budget: the most depth passes (over `map_size`² texels each) to draw in this frame; none for no
+            /// limit. A view is one pass, or two where the layer that is kept of what stands still is drawn anew. The most
+            /// important lights are refreshed first, and at least one is, whatever it takes; the others show their last map and
+            /// are reported as deferred. A light that has never been drawn, or not since `invalidate`, is lit until its turn.
             ///
             /// The encoder must be submitted before anything that asks for these shadows, and encoders in the order in which
             /// they were recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)).
@@ -282,32 +251,22 @@ macro_rules! pool {
             /// is recorded then, and the last good maps remain.
             pub fn record(
                 &mut self,
-                device: &wgpu::Device,
                 encoder: &mut wgpu::CommandEncoder,
-                frame: &PoolFrame<'_, $light>,
+                frame: &ShadowFrame<'_>,
+                lights: &[PoolLight<$light>],
+                max_views: Option<u32>,
             ) -> Result<&ShadowReport, ShadowError> {
-                self.slots.check_frame(frame.lights)?;
-                let mut lights = std::mem::take(&mut self.placements);
-                lights.clear();
-                for $entry in frame.lights {
-                    let placement: Result<LocalPlacement, ShadowError> = $placement;
-                    lights.push(placement?);
+                self.slots.check_frame(lights)?;
+                let mut placements = std::mem::take(&mut self.placements);
+                placements.clear();
+                for entry in lights {
+                    let placement = entry.light.placement(entry.slot.index, entry.importance)?;
+                    placements.push(placement);
                 }
-                let report = self.lights.record(
-                    &mut self.maps,
-                    device,
-                    encoder,
-                    &LocalFrame {
-                        origin: frame.origin,
-                        lights: &lights,
-                        camera: frame.camera.as_ref(),
-                        casters: frame.casters,
-                        receivers: frame.receivers,
-                        max_views: frame.max_views,
-                        fields: &FIELDS,
-                    },
-                );
-                self.placements = lights;
+                let report =
+                    self.lights
+                        .record(&mut self.maps, encoder, frame, &placements, max_views);
+                self.placements = placements;
                 report
             }
         }
@@ -322,8 +281,7 @@ pool!(
     OmniLight,
     6,
     Selection::CubeFace,
-    check::filter,
-    |entry| Ok(entry.light.placement(entry.slot.index, entry.importance))
+    check::filter
 );
 
 pool!(
@@ -334,13 +292,7 @@ pool!(
     SpotLight,
     1,
     Selection::OneView,
-    check::planar_filter,
-    |entry| entry.light.placement(
-        entry.slot.index,
-        entry.importance,
-        "PoolFrame::lights.direction",
-        "PoolFrame::lights.outer_angle_radians",
-    )
+    check::planar_filter
 );
 
 light_maps_getters!(OmniShadowPool, "face, six to a slot");

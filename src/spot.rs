@@ -2,13 +2,12 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::cast::ShadowCaster;
 use crate::check;
 use crate::fit::{LightAxes, MAX_LOCAL_VIEWS};
 use crate::light_maps::{LightMaps, LightMapsDescriptor, light_maps_getters};
-use crate::local_lights::{LocalFields, LocalFrame, LocalLights, LocalPlacement};
+use crate::local_lights::{LocalLights, LocalPlacement};
 use crate::receive::{Sampling, Selection};
-use crate::{Aabb, Bias, CameraView, Filter, ShadowError, ShadowReport};
+use crate::{Bias, Filter, ShadowError, ShadowFrame, ShadowReport};
 
 /// What a [`SpotShadow`] is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,40 +54,12 @@ impl SpotLight {
     pub const WIDEST_SENSIBLE_OUTER_ANGLE: f32 = 1.183_199_6;
 }
 
-/// What a spot light needs to know of a frame.
-#[derive(Clone, Copy)]
-pub struct SpotFrame<'a> {
-    /// World position of render space's origin, f64. Zero unless the engine renders relative to its camera.
-    pub origin: DVec3,
-    /// The light.
-    pub light: SpotLight,
-    /// The camera whose picture the shadows are for: what it does not see needs no map. None for all of the cone.
-    pub camera: Option<CameraView>,
-    /// Everything that may cast; all of it receives, too.
-    pub casters: &'a [&'a dyn ShadowCaster],
-    /// Bounds in render space of surfaces that only receive.
-    pub receivers: &'a [Aabb],
-}
-
 /// Shadows of a spot light: one perspective view in a depth texture of one layer.
 #[derive(Debug)]
 pub struct SpotShadow {
     maps: LightMaps,
     lights: LocalLights,
 }
-
-const FIELDS: LocalFields = LocalFields {
-    origin: "SpotFrame::origin",
-    position: "SpotFrame::light.position_world",
-    range: "SpotFrame::light.range",
-    camera: [
-        "SpotFrame::camera.view_from_render",
-        "SpotFrame::camera.clip_from_view",
-        "SpotFrame::camera.max_distance",
-    ],
-    casters: "SpotFrame::casters",
-    receivers: "SpotFrame::receivers",
-};
 
 impl SpotShadow {
     /// Makes texture and buffers. Until the first [`SpotShadow::record`], everything is lit.
@@ -130,46 +101,29 @@ impl SpotShadow {
     /// last good map remains.
     pub fn record(
         &mut self,
-        device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
-        frame: &SpotFrame<'_>,
+        frame: &ShadowFrame<'_>,
+        light: &SpotLight,
     ) -> Result<&ShadowReport, ShadowError> {
-        let light = frame.light.placement(
-            0,
-            1.0,
-            "SpotFrame::light.direction",
-            "SpotFrame::light.outer_angle_radians",
-        )?;
-        self.lights.record(
-            &mut self.maps,
-            device,
-            encoder,
-            &LocalFrame {
-                origin: frame.origin,
-                lights: &[light],
-                camera: frame.camera.as_ref(),
-                casters: frame.casters,
-                receivers: frame.receivers,
-                max_views: None,
-                fields: &FIELDS,
-            },
-        )
+        let light = light.placement(0, 1.0)?;
+        self.lights
+            .record(&mut self.maps, encoder, frame, &[light], None)
     }
 }
 
 impl SpotLight {
-    /// The light in a slot of its maps, if its direction and angle are sound.
+    /// Returns the light in a slot of its maps if its numbers are sound.
     pub(crate) fn placement(
         &self,
         slot: u32,
         importance: f32,
-        direction_field: &'static str,
-        angle_field: &'static str,
     ) -> Result<LocalPlacement, ShadowError> {
         let direction = self.direction.as_dvec3();
-        check::direction(direction_field, direction)?;
+        check::finite_vector("SpotLight::position_world", self.position_world)?;
+        check::above_zero("SpotLight::range", self.range)?;
+        check::direction("SpotLight::direction", direction)?;
         check::in_range(
-            angle_field,
+            "SpotLight::outer_angle_radians",
             "above 0 and below π/2",
             self.outer_angle_radians > 0.0
                 && self.outer_angle_radians < std::f32::consts::FRAC_PI_2,

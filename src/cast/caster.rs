@@ -43,9 +43,9 @@ impl Revision {
 
 /// Something that casts shadows.
 ///
-/// In a frame of a light, [`bounds`](ShadowCaster::bounds), [`triangles`](ShadowCaster::triangles),
-/// [`revision`](ShadowCaster::revision) and the two questions about [`draw`](ShadowCaster::draw) are asked once; `draw` is called
-/// once for each pass that the caster takes part in.
+/// [`ShadowScene::frame`](crate::ShadowScene::frame) calls every method but [`pipeline`](ShadowCaster::pipeline) and
+/// [`draw`](ShadowCaster::draw) once, for all lights of the frame. Those two are called for each pass that the caster takes part
+/// in.
 pub trait ShadowCaster {
     /// Bounds in render space of everything that [`ShadowCaster::draw`] may draw, displacement included. Used to fit and to
     /// cull. Geometry outside its bounds loses its shadow at times; empty bounds cast nothing.
@@ -65,6 +65,18 @@ pub trait ShadowCaster {
     ///
     /// A panic in here leaves the layer that was being drawn without its shadows until the next frame, which draws it anew.
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &ShadowView);
+
+    /// Returns whether it casts shadows. The default returns true. One that does not is never drawn, but still receives: a
+    /// window pane, a ground that nothing lies under.
+    fn casts(&self) -> bool {
+        true
+    }
+
+    /// Returns whether shadows on it are looked up. The default returns true. Where it returns false, no texels are spent on
+    /// its surface: a sky dome, a helper without a surface of its own, an occluder that stands in for others.
+    fn receives(&self) -> bool {
+        true
+    }
 
     /// Returns whether [`ShadowCaster::draw`] sets nothing of the pass but vertex and index buffers and bind groups 1 and up.
     /// Nothing then needs to be restored before the next caster, which saves four calls. The default returns false, which is

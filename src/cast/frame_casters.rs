@@ -17,7 +17,7 @@ pub(crate) struct CasterFacts {
 #[derive(Clone, Copy)]
 pub(crate) struct FrameCasters<'a> {
     pub casters: &'a [&'a dyn ShadowCaster],
-    /// One entry per caster.
+    /// One entry per caster; empty for one that does not cast.
     pub bounds: &'a [Aabb],
     /// One entry per caster.
     pub facts: &'a [CasterFacts],
@@ -49,16 +49,24 @@ pub(crate) struct CasterAnswers {
 }
 
 impl CasterAnswers {
-    /// Asks all casters. `field` is the path of the list in the caller's frame.
+    /// Asks all casters, and adds the bounds of those that receive to `receivers`. `field` is the path of the list in the
+    /// caller's frame.
     pub fn ask<'a>(
         &'a mut self,
         field: &'static str,
         casters: &'a [&'a dyn ShadowCaster],
+        receivers: &mut Vec<Aabb>,
     ) -> Result<FrameCasters<'a>, ShadowError> {
         self.bounds.clear();
         self.facts.clear();
-        for caster in casters {
-            self.bounds.push(caster.bounds());
+        for (index, caster) in casters.iter().enumerate() {
+            let bounds = caster.bounds();
+            check::bounds(field, index, &bounds)?;
+            if caster.receives() {
+                receivers.push(bounds);
+            }
+            let casts = caster.casts();
+            self.bounds.push(if casts { bounds } else { Aabb::EMPTY });
             self.facts.push(CasterFacts {
                 revision: caster.revision(),
                 triangles: caster.triangles(),
@@ -66,7 +74,6 @@ impl CasterAnswers {
                 keeps_pass_state: caster.keeps_pass_state(),
             });
         }
-        check::receiver_bounds(field, &self.bounds)?;
         Ok(FrameCasters {
             casters,
             bounds: &self.bounds,

@@ -41,20 +41,14 @@ impl CameraView {
         }
     }
 
-    /// The visible volume in render space.
-    ///
-    /// The arguments are the paths of the three fields in the caller's frame, for its errors.
-    pub(crate) fn frustum(
-        &self,
-        view_field: &'static str,
-        clip_field: &'static str,
-        distance_field: &'static str,
-    ) -> Result<CameraFrustum, ShadowError> {
-        let view_from_render = checked(&self.view_from_render, view_field)?;
-        let clip_from_view = checked(&self.clip_from_view, clip_field)?;
+    /// Returns the visible volume in render space. `camera` is the place in the frame's list, for errors.
+    pub(crate) fn frustum(&self, camera: usize) -> Result<CameraFrustum, ShadowError> {
+        const VIEW: &str = "CameraView::view_from_render";
+        let view_from_render = checked(&self.view_from_render, VIEW, camera)?;
+        let clip_from_view = checked(&self.clip_from_view, "CameraView::clip_from_view", camera)?;
         if self.max_distance.is_nan() || self.max_distance <= 0.0 {
             return Err(ShadowError::OutOfRange {
-                field: distance_field,
+                field: "CameraView::max_distance",
                 rule: "above 0 (infinity allowed)",
                 value: self.max_distance.to_string(),
             });
@@ -87,7 +81,7 @@ impl CameraView {
         let eye = render_from_view.transform_point3(DVec3::ZERO);
         let forward = render_from_view.transform_vector3(forward_view).normalize();
         if !(eye.is_finite() && forward.is_finite()) {
-            return Err(camera_matrix(view_field, &self.view_from_render));
+            return Err(camera_matrix(VIEW, camera, &self.view_from_render));
         }
         if self.max_distance.is_finite() {
             planes.push(HalfSpace {
@@ -107,6 +101,7 @@ impl CameraView {
 }
 
 /// What a camera sees, in render space.
+#[derive(Debug)]
 pub(crate) struct CameraFrustum {
     pub planes: HalfSpaces,
     eye: DVec3,
@@ -121,6 +116,11 @@ impl CameraFrustum {
     pub fn depth_range(&self) -> (f64, f64) {
         let corners = &self.corners;
         (corners.depth_near, corners.depth_far.min(self.max_distance))
+    }
+
+    /// Returns the distance limit, in world units; infinite for none.
+    pub fn max_distance(&self) -> f64 {
+        self.max_distance
     }
 
     /// Unit vector along the view.
@@ -154,7 +154,7 @@ impl CameraFrustum {
     }
 }
 
-fn checked(matrix: &Mat4, field: &'static str) -> Result<DMat4, ShadowError> {
+fn checked(matrix: &Mat4, field: &'static str, camera: usize) -> Result<DMat4, ShadowError> {
     let matrix_double = matrix.as_dmat4();
     // The determinant's own magnitude says nothing (a scale of 1e-5 gives 1e-20); that the inverse is finite does.
     if matrix.is_finite()
@@ -163,13 +163,14 @@ fn checked(matrix: &Mat4, field: &'static str) -> Result<DMat4, ShadowError> {
     {
         Ok(matrix_double)
     } else {
-        Err(camera_matrix(field, matrix))
+        Err(camera_matrix(field, camera, matrix))
     }
 }
 
-fn camera_matrix(field: &'static str, matrix: &Mat4) -> ShadowError {
+fn camera_matrix(field: &'static str, camera: usize, matrix: &Mat4) -> ShadowError {
     ShadowError::CameraMatrix {
         field,
+        camera,
         value: matrix.to_string(),
     }
 }

@@ -18,11 +18,14 @@ use crate::{Aabb, ShadowError};
 pub(crate) const MAX_CASCADES: usize = 8;
 
 /// Where receivers count.
+#[derive(Clone, Copy)]
 pub(crate) enum Region<'a> {
-    /// What a camera sees of them.
-    Camera(&'a CameraFrustum),
+    /// What any of these cameras sees of them.
+    Cameras(&'a [CameraFrustum]),
     /// All that lies in a given box; the window then is the box, whatever the casters.
     Bounds(Aabb),
+    /// Everywhere.
+    Everything,
 }
 
 /// What a frame brings.
@@ -30,9 +33,9 @@ pub(crate) struct FitInput<'a> {
     pub axes: LightAxes,
     pub origin: DVec3,
     pub region: Region<'a>,
-    /// Bounds of casters, which receive too.
+    /// Bounds of what casts; empty ones cast nothing.
     pub casters: &'a [Aabb],
-    /// Bounds of surfaces that only receive.
+    /// Bounds of what receives.
     pub receivers: &'a [Aabb],
 }
 
@@ -91,11 +94,9 @@ impl DirectionalFit {
         scratch: &mut FitScratch,
     ) -> Result<Self, ShadowError> {
         let visible = match &input.region {
-            Region::Bounds(bounds) => SeenBounds::of_box(bounds),
-            Region::Camera(camera) => {
-                let receivers = input.casters.iter().chain(input.receivers);
-                visible::find(camera, receivers, &mut scratch.seen)
-            }
+            Region::Bounds(bounds) => SeenBounds::of_boxes([bounds]),
+            Region::Everything => SeenBounds::of_boxes(input.receivers),
+            Region::Cameras(cameras) => visible::find(cameras, input.receivers, &mut scratch.seen),
         };
         scratch.casters.clear();
         scratch
@@ -160,19 +161,26 @@ fn widest_given(input: &FitInput<'_>) -> f64 {
     input.axes.light_box(&given, DVec3::ZERO).widest_side()
 }
 
-/// Cascade `cascade` of a camera's view; none where its depths hold nothing.
+/// Returns cascade `cascade` of the first camera's view; none without a camera, or where its depths hold nothing. All cameras
+/// are divided at the same depths.
 fn camera_slice<'a>(
     input: &FitInput<'a>,
     limits: &FitLimits,
     visible: &'a SeenBounds,
     cascade: usize,
 ) -> Option<Slice<'a>> {
-    let Region::Camera(camera) = &input.region else {
+    let Region::Cameras(cameras) = input.region else {
         return None;
     };
+    let camera = cameras.first()?;
     let (near, far) = match limits.stability {
         Stability::Rungs => (visible.depth_near, visible.depth_far),
-        Stability::Rotation => camera.depth_range(),
+        Stability::Rotation => {
+            let ranges = cameras.iter().map(CameraFrustum::depth_range);
+            ranges.fold((f64::INFINITY, f64::NEG_INFINITY), |all, range| {
+                (all.0.min(range.0), all.1.max(range.1))
+            })
+        }
     };
     let end = |index| limits.split.depth(index, limits.cascades, near, far);
     let between = (end(cascade), end(cascade + 1));
@@ -193,17 +201,33 @@ fn required_box(
     seen: &[Seen],
     cascade: usize,
 ) -> Option<LightBox> {
-    if let Region::Bounds(bounds) = &input.region {
-        return (cascade == 0 && !bounds.is_empty())
-            .then(|| input.axes.light_box(bounds, input.origin));
+    let mut required = LightBox::EMPTY;
+    let of_box = |bounds: &Aabb| input.axes.light_box(bounds, input.origin);
+    match input.region {
+        Region::Bounds(bounds) if cascade == 0 && !bounds.is_empty() => {
+            required = of_box(&bounds);
+        }
+        Region::Everything if cascade == 0 => {
+            let receivers = input.receivers.iter().filter(|bounds| !bounds.is_empty());
+            receivers.for_each(|bounds| required.union(&of_box(bounds)));
+        }
+        Region::Bounds(_) | Region::Everything => {}
+        Region::Cameras(cameras) => {
+            let between = slice?.between;
+            let (axes, origin) = (&input.axes, input.origin);
+            for camera in cameras.iter().enumerate() {
+                let seen = visible::light_box_between(camera, seen, between, axes, origin);
+                if seen.is_empty() {
+                    continue;
+                }
+                required.union(&match limits.stability {
+                    Stability::Rungs => seen,
+                    Stability::Rotation => around_slice(input, camera.1, between, seen),
+                });
+            }
+        }
     }
-    let slice = slice?;
-    let between = slice.between;
-    let seen = visible::light_box_between(slice.camera, seen, between, &input.axes, input.origin)?;
-    Some(match limits.stability {
-        Stability::Rungs => seen,
-        Stability::Rotation => around_slice(input, slice.camera, between, seen),
-    })
+    (!required.is_empty()).then_some(required)
 }
 
 /// The depths of `seen` over the whole of a slice's sphere.
@@ -260,7 +284,12 @@ fn fit_window(
         return None;
     }
     let mut covered = required;
-    if matches!(input.region, Region::Camera(_)) && limits.stability == Stability::Rungs {
+    let follows_casters = match input.region {
+        Region::Bounds(_) => false,
+        Region::Everything => true,
+        Region::Cameras(_) => limits.stability == Stability::Rungs,
+    };
+    if follows_casters {
         covered.min = required.min.max(shadows.min).with_z(required.min.z);
         covered.max = required.max.min(shadows.max).max(covered.min);
     }

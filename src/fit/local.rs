@@ -7,7 +7,6 @@ use glam::{DVec2, DVec3};
 
 use crate::Aabb;
 use crate::fit::axes::LightAxes;
-use crate::fit::camera::CameraFrustum;
 use crate::fit::reached::{self, Reached};
 use crate::fit::region::{HalfSpace, HalfSpaces, Relation};
 use crate::fit::window::{MapWindow, WindowRequest};
@@ -34,11 +33,11 @@ pub(crate) struct LocalInput<'a> {
     pub caster_tangent: f64,
     /// Lookups reach beyond the place of their receiver: views are not limited to where receivers are seen.
     pub looks_around: bool,
-    /// Limits receivers to what a camera sees.
-    pub camera: Option<&'a CameraFrustum>,
-    /// Bounds of casters, which receive too.
+    /// Receivers count where they lie in one of these regions: what the cameras see, or everywhere.
+    pub seen: &'a [HalfSpaces],
+    /// Bounds of what casts; empty ones cast nothing.
     pub casters: &'a [Aabb],
-    /// Bounds of surfaces that only receive.
+    /// Bounds of what receives.
     pub receivers: &'a [Aabb],
     pub map_size: u32,
     pub margin_texels: u32,
@@ -146,12 +145,16 @@ impl ViewFrame<'_> {
         if input.looks_around {
             return Some((cast.min, cast.max));
         }
-        let mut seen = square(input.receiver_tangent);
-        if let Some(camera) = input.camera {
-            let planes = camera.planes.as_slice().iter();
+        let mut received = Extent::NOTHING;
+        for region in input.seen {
+            let mut seen = square(input.receiver_tangent);
+            let planes = region.as_slice().iter();
             planes.for_each(|plane| seen.push(*plane));
+            if let Some(extent) = self.extent(&seen, reached.receivers.iter()) {
+                received.min = received.min.min(extent.min);
+                received.max = received.max.max(extent.max);
+            }
         }
-        let received = self.extent(&seen, reached.receivers.iter())?;
         let (min, max) = (cast.min.max(received.min), cast.max.min(received.max));
         min.cmple(max).all().then_some((min, max))
     }
@@ -186,10 +189,7 @@ impl ViewFrame<'_> {
         region: &HalfSpaces,
         boxes: impl Iterator<Item = &'b Aabb>,
     ) -> Option<Extent> {
-        let mut extent = Extent {
-            min: DVec2::INFINITY,
-            max: DVec2::NEG_INFINITY,
-        };
+        let mut extent = Extent::NOTHING;
         for bounds in boxes {
             if region.relation(bounds) == Relation::Outside || extent.holds(&self.span(bounds)) {
                 continue;
@@ -241,6 +241,11 @@ struct Span {
 }
 
 impl Extent {
+    const NOTHING: Self = Self {
+        min: DVec2::INFINITY,
+        max: DVec2::NEG_INFINITY,
+    };
+
     /// Do all tangents of the box lie within these already?
     fn holds(&self, span: &Span) -> bool {
         let at = |across: DVec2| (across / span.nearest, across / span.farthest);

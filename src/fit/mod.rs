@@ -45,6 +45,7 @@ pub(crate) use directional::{
 pub use footprint::SliceReport;
 pub(crate) use local::{LocalFit, LocalInput, MAX_LOCAL_VIEWS};
 pub(crate) use reached::Reached;
+pub(crate) use region::HalfSpaces;
 pub(crate) use spacing::Spacing;
 pub use split::CascadeSplit;
 pub use stability::Stability;

@@ -4,14 +4,14 @@ use glam::DVec3;
 
 use crate::Aabb;
 use crate::fit::local::LocalInput;
-use crate::fit::region::{HalfSpaces, Relation};
+use crate::fit::region::Relation;
 
 /// The casters and receivers within a light's reach. Lists keep their memory from frame to frame.
 #[derive(Debug, Default)]
 pub(crate) struct Reached {
     /// Casters that can shadow something.
     pub casters: Vec<ReachedCaster>,
-    /// What of casters and receivers the light reaches.
+    /// What of the receivers the light reaches.
     pub receivers: Vec<Aabb>,
 }
 
@@ -41,8 +41,6 @@ impl Reached {
         self.casters.extend(casters.filter_map(|(index, bounds)| {
             near(bounds).map(|bounds| ReachedCaster { index, bounds })
         }));
-        let parts = self.casters.iter().map(|caster| caster.bounds);
-        self.receivers.extend(parts);
         let receivers = input.receivers.iter().filter_map(near);
         self.receivers.extend(receivers);
         let visible = self.visible_bounds(input);
@@ -50,12 +48,14 @@ impl Reached {
             .retain(|caster| can_shadow(&input.casters[caster.index as usize], &visible, light));
     }
 
-    /// Bounds of the receivers that the camera, if any, sees.
+    /// Bounds of the receivers that count.
     fn visible_bounds(&self, input: &LocalInput<'_>) -> (DVec3, DVec3) {
-        let all = HalfSpaces::default();
-        let seen = input.camera.map_or(&all, |camera| &camera.planes);
         let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for bounds in &self.receivers {
+        let everywhere = input.seen.iter().flat_map(|seen| {
+            let receivers = self.receivers.iter();
+            receivers.map(move |bounds| (seen, bounds))
+        });
+        for (seen, bounds) in everywhere {
             let (low, high) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
             if min.cmple(low).all() && max.cmpge(high).all() {
                 continue;

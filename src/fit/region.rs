@@ -20,8 +20,8 @@ impl HalfSpace {
     }
 }
 
-/// Six sides of a camera's clip volume and its distance limit, with either the two ends of a slice and the four sides of a
-/// window, or the five sides of a local light's view.
+/// Six sides of a box or of a camera's clip volume and its distance limit, with either the two ends of a slice and the four
+/// sides of a window, or the five sides of a local light's view.
 const CAPACITY: usize = 13;
 
 /// An intersection of at most [`CAPACITY`] half-spaces. None at all is all of space.
@@ -84,6 +84,23 @@ impl Segment {
 }
 
 impl HalfSpaces {
+    /// Returns the inside of a box.
+    pub fn of_box(bounds: &Aabb) -> Self {
+        let mut planes = Self::default();
+        let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+        for (axis, normal) in [DVec3::X, DVec3::Y, DVec3::Z].into_iter().enumerate() {
+            planes.push(HalfSpace {
+                normal,
+                offset: -min[axis],
+            });
+            planes.push(HalfSpace {
+                normal: -normal,
+                offset: max[axis],
+            });
+        }
+        planes
+    }
+
     pub fn push(&mut self, plane: HalfSpace) {
         self.planes[self.count] = plane;
         self.count += 1;

@@ -7,9 +7,11 @@ use crate::fit::axes::{LightAxes, LightBox};
 use crate::fit::camera::CameraFrustum;
 use crate::fit::region::Relation;
 
-/// A receiver of which the camera sees something.
+/// A receiver of which one of the cameras sees something.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Seen {
+    /// Which of the frame's cameras sees it.
+    camera: usize,
     bounds: Aabb,
     /// All of it lies in the camera's volume.
     wholly: bool,
@@ -35,13 +37,14 @@ impl SeenBounds {
         depth_far: f64::NEG_INFINITY,
     };
 
-    /// All of a box, at no depth in particular.
-    pub fn of_box(bounds: &Aabb) -> Self {
-        Self {
-            render_min: bounds.min.as_dvec3(),
-            render_max: bounds.max.as_dvec3(),
-            ..Self::NOTHING
+    /// Returns the bounds of all of some boxes, at no depth in particular.
+    pub fn of_boxes<'a>(boxes: impl IntoIterator<Item = &'a Aabb>) -> Self {
+        let mut all = Self::NOTHING;
+        for bounds in boxes.into_iter().filter(|bounds| !bounds.is_empty()) {
+            all.render_min = all.render_min.min(bounds.min.as_dvec3());
+            all.render_max = all.render_max.max(bounds.max.as_dvec3());
         }
+        all
     }
 
     fn include(&mut self, seen: &Seen, render_min: DVec3, render_max: DVec3) {
@@ -52,17 +55,30 @@ impl SeenBounds {
     }
 }
 
-/// Fills `seen` with the receivers that `camera` sees something of; returns the bounds of what it sees.
-pub(crate) fn find<'a>(
-    camera: &CameraFrustum,
-    receivers: impl Iterator<Item = &'a Aabb>,
+/// Fills `seen` with the receivers that each of the cameras sees something of; returns the bounds of what they see together.
+pub(crate) fn find(
+    cameras: &[CameraFrustum],
+    receivers: &[Aabb],
     seen: &mut Vec<Seen>,
 ) -> SeenBounds {
     seen.clear();
     let mut all = SeenBounds::NOTHING;
-    for bounds in receivers.filter(|bounds| !bounds.is_empty()) {
+    for (index, camera) in cameras.iter().enumerate() {
+        find_through((index, camera), receivers, seen, &mut all);
+    }
+    all
+}
+
+fn find_through(
+    (index, camera): (usize, &CameraFrustum),
+    receivers: &[Aabb],
+    seen: &mut Vec<Seen>,
+    all: &mut SeenBounds,
+) {
+    for bounds in receivers.iter().filter(|bounds| !bounds.is_empty()) {
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
         let mut part = Seen {
+            camera: index,
             bounds: *bounds,
             wholly: false,
             depth_near: f64::INFINITY,
@@ -95,22 +111,21 @@ pub(crate) fn find<'a>(
         }
         seen.push(part);
     }
-    all
 }
 
-/// Light-space box of what is seen between two depths; none for nothing.
+/// Returns the light-space box of what the camera at `index` sees between two depths; empty for nothing.
 pub(crate) fn light_box_between(
-    camera: &CameraFrustum,
+    (index, camera): (usize, &CameraFrustum),
     seen: &[Seen],
     (depth_near, depth_far): (f64, f64),
     axes: &LightAxes,
     origin: DVec3,
-) -> Option<LightBox> {
+) -> LightBox {
     let slice = camera.slice(depth_near, depth_far);
     let mut covered = LightBox::EMPTY;
-    let overlapping = seen
-        .iter()
-        .filter(|part| part.depth_near <= depth_far && part.depth_far >= depth_near);
+    let overlapping = seen.iter().filter(|part| {
+        part.camera == index && part.depth_near <= depth_far && part.depth_far >= depth_near
+    });
     for part in overlapping {
         if part.wholly && part.depth_near >= depth_near && part.depth_far <= depth_far {
             covered.union(&axes.light_box(&part.bounds, origin));
@@ -120,5 +135,5 @@ pub(crate) fn light_box_between(
             });
         }
     }
-    (!covered.is_empty()).then_some(covered)
+    covered
 }

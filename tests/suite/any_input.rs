@@ -3,11 +3,12 @@
 
 use glam::{DVec3, Mat4, Vec3, Vec4};
 use wgpu_shadows::{
-    Aabb, CameraView, CascadeSplit, Coverage, DirectionalFrame, DirectionalLight,
-    DirectionalShadow, DirectionalShadowDescriptor, ShadowCaster,
+    Aabb, CameraView, CascadeSplit, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, ShadowCaster,
 };
 
 use crate::support::camera::Camera;
+use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};
 use crate::support::gpu::gpu;
 use crate::support::probe::{Point, SunProbe, record};
 use crate::support::random::Random;
@@ -103,7 +104,7 @@ fn no_frame_breaks_a_sun() {
             receivers: &receivers,
         };
         let mut encoder = gpu.encoder();
-        let result = shadow.record(&gpu.device, &mut encoder, &frame);
+        let result = shadow.record_frame(&mut encoder, &frame);
         let count = if result.is_ok() {
             &mut accepted
         } else {

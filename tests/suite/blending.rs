@@ -3,11 +3,12 @@
 use glam::{DVec3, Vec3};
 use wgpu_shadows::reference::{self, DepthLayer};
 use wgpu_shadows::{
-    Bias, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, Filter, ShadowBindings, ShadowBindingsDescriptor,
+    Bias, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter, ShadowBindings,
+    ShadowBindingsDescriptor,
 };
 
 use crate::support::camera::Camera;
+use crate::support::frames::{Coverage, DirectionalFrame};
 use crate::support::gpu::gpu;
 use crate::support::probe::{Point, SunProbe, record};
 use crate::support::readback;

@@ -2,11 +2,12 @@
 
 use glam::{DVec3, DVec4, Mat4};
 use wgpu_shadows::{
-    Coverage, DebugView, DebugViewError, DirectionalFrame, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, reference,
+    DebugView, DebugViewError, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    reference,
 };
 
 use crate::support::camera::Camera;
+use crate::support::frames::{Coverage, DirectionalFrame};
 use crate::support::gpu::{Gpu, gpu, vulkan};
 use crate::support::picture::{COLOR, color_target};
 use crate::support::probe::record;

@@ -3,11 +3,12 @@
 use glam::{DVec3, Mat4, Quat, Vec3, Vec4};
 use wgpu::{BufferUsages, VertexFormat};
 use wgpu_shadows::{
-    Aabb, CasterPipeline, CasterPipelineDescriptor, CasterVertex, Coverage, DirectionalFrame,
-    DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, MeshCaster,
-    MeshCasterDescriptor, MeshIndices, ModelTransform, PositionAttribute, ShadowCaster, ShadowView,
+    Aabb, CasterPipeline, CasterPipelineDescriptor, CasterVertex, DirectionalLight,
+    DirectionalShadow, DirectionalShadowDescriptor, MeshCaster, MeshCasterDescriptor, MeshIndices,
+    ModelTransform, PositionAttribute, ShadowCaster, ShadowView,
 };
 
+use crate::support::frames::{Coverage, DirectionalFrame};
 use crate::support::gpu::{Gpu, gpu, vulkan};
 use crate::support::probe::record;
 use crate::support::readback;

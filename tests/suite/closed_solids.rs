@@ -2,11 +2,12 @@
 
 use glam::{DVec3, Mat4, Quat, Vec3};
 use wgpu_shadows::{
-    CasterPipeline, CasterPipelineDescriptor, Coverage, DirectionalFrame, DirectionalLight,
-    DirectionalShadow, DirectionalShadowDescriptor, OmniFrame, OmniLight, OmniShadow,
-    OmniShadowDescriptor, ShadowCaster, is_closed_solid,
+    CasterPipeline, CasterPipelineDescriptor, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowCaster,
+    is_closed_solid,
 };
 
+use crate::support::frames::{Coverage, DirectionalFrame, OmniFrame, RecordFrame};
 use crate::support::gpu::{Gpu, gpu};
 use crate::support::random::Random;
 use crate::support::readback;
@@ -154,7 +155,7 @@ fn back_faces_of_solids_change_no_map() {
             casters: &list,
             receivers: &[],
         };
-        sun.record(&gpu.device, &mut encoder, &frame)
+        sun.record_frame(&mut encoder, &frame)
             .expect("a valid frame");
         let frame = OmniFrame {
             origin: DVec3::ZERO,
@@ -166,7 +167,7 @@ fn back_faces_of_solids_change_no_map() {
             casters: &list,
             receivers: &[],
         };
-        lamp.record(&gpu.device, &mut encoder, &frame)
+        lamp.record_frame(&mut encoder, &frame)
             .expect("a valid frame");
         gpu.submit(encoder);
         let mut layers = vec![readback::depth_layer(gpu, sun.texture(), 0)];

@@ -3,10 +3,11 @@
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
-    Aabb, Bias, Coverage, DepthFormat, DirectionalFrame, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, Filter, ShadowCaster,
+    Aabb, Bias, DepthFormat, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    Filter, ShadowCaster,
 };
 
+use crate::support::frames::{Coverage, DirectionalFrame};
 use crate::support::gpu::{Gpu, gpu};
 use crate::support::probe::{Point, SunProbe, record};
 use crate::support::random::Random;

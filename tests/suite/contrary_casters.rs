@@ -6,11 +6,12 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, CasterPipeline, CasterPipelineDescriptor, Coverage, DepthFormat, DirectionalFrame,
-    DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, MeshCaster, Revision,
-    ShadowCaster, ShadowError, ShadowReport, ShadowView, ViewReport, ViewStatus,
+    Aabb, CasterPipeline, CasterPipelineDescriptor, DepthFormat, DirectionalLight,
+    DirectionalShadow, DirectionalShadowDescriptor, MeshCaster, Revision, ShadowCaster,
+    ShadowError, ShadowReport, ShadowView, ViewReport, ViewStatus,
 };
 
+use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};
 use crate::support::gpu::{Gpu, gpu};
 use crate::support::probe::record;
 use crate::support::readback;
@@ -105,7 +106,7 @@ fn casters_that_change_their_mind() {
         let mut shadow = sun(gpu);
         let mut encoder = gpu.encoder();
         let result = shadow
-            .record(&gpu.device, &mut encoder, &frame(&[&caster]))
+            .record_frame(&mut encoder, &frame(&[&caster]))
             .cloned();
         gpu.submit(encoder);
         match result {
@@ -230,7 +231,7 @@ fn a_caster_that_panics_leaves_nothing_behind() {
     let mut shadow = sun(gpu);
     let mut encoder = gpu.encoder();
     let caught = catch_unwind(AssertUnwindSafe(|| {
-        let _ = shadow.record(&gpu.device, &mut encoder, &frame(&list));
+        let _ = shadow.record_frame(&mut encoder, &frame(&list));
     }));
     assert!(caught.is_err(), "the panic is the engine's to catch");
     gpu.submit(encoder);
@@ -387,17 +388,17 @@ fn pipelines_of_another_device() {
     let list: [&dyn ShadowCaster; 2] = [&own, &foreign];
     let mut encoder = here.encoder();
     let error = shadow
-        .record(&here.device, &mut encoder, &frame(&list))
+        .record_frame(&mut encoder, &frame(&list))
         .expect_err("a foreign pipeline");
     here.submit(encoder);
     let wanted = ShadowError::CasterDevice {
-        field: "DirectionalFrame::casters",
+        field: "ShadowFrameDescriptor::casters",
         index: 1,
     };
     assert_eq!(error, wanted);
     assert_eq!(
         error.to_string(),
-        "DirectionalFrame::casters[1]: its CasterPipeline must be made on the device of the light"
+        "ShadowFrameDescriptor::casters[1]: its CasterPipeline must be made on the device of the light"
     );
     let report = record(&here, &mut shadow, &frame(&[&own]));
     assert_eq!(report.views[0].status, ViewStatus::Drawn);
@@ -416,7 +417,7 @@ fn two_frames_before_one_submission() {
         mesh.set_transform(Mat4::from_translation(Vec3::X * 3.0 * step as f32))
             .expect("a finite matrix");
         shadow
-            .record(&gpu.device, &mut encoder, &frame(&[&mesh]))
+            .record_frame(&mut encoder, &frame(&[&mesh]))
             .expect("a valid frame");
     }
     gpu.submit(encoder);

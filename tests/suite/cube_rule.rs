@@ -2,11 +2,12 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    CasterPipeline, CasterPipelineDescriptor, CasterVertex, OmniFrame, OmniLight, OmniShadow,
+    CasterPipeline, CasterPipelineDescriptor, CasterVertex, OmniLight, OmniShadow,
     OmniShadowDescriptor, ViewStatus,
 };
 
 use crate::support::cube_pair::{LIGHT, Pair, Stage, furnished, room};
+use crate::support::frames::{OmniFrame, RecordFrame};
 use crate::support::gpu::Gpu;
 use crate::support::multiview::{device, is_right};
 use crate::support::scene::{Mesh, default_pipeline};
@@ -74,7 +75,7 @@ fn meshes_are_drawn_in_one_pass_unless_they_are_dense() {
             receivers: &[],
         };
         let report = shadow
-            .record(&gpu.device, &mut encoder, &frame)
+            .record_frame(&mut encoder, &frame)
             .expect("a valid frame");
         report.passes
     };

@@ -4,13 +4,15 @@
 use glam::{DVec3, Vec3};
 use image::RgbaImage;
 use wgpu_shadows::{
-    Aabb, Coverage, DebugPicture, DebugView, DebugViewError, DirectionalFrame, DirectionalLight,
-    DirectionalShadow, DirectionalShadowDescriptor, OmniFrame, OmniLight, OmniShadow,
-    OmniShadowDescriptor, OmniShadowPool, PoolDescriptor, PoolFrame, PoolLight, ShadowSource,
-    SpotFrame, SpotLight, SpotShadow, SpotShadowDescriptor,
+    Aabb, DebugPicture, DebugView, DebugViewError, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, OmniLight, OmniShadow, OmniShadowDescriptor, OmniShadowPool,
+    PoolDescriptor, PoolLight, ShadowSource, SpotLight, SpotShadow, SpotShadowDescriptor,
 };
 
 use crate::support::ask::{record_omni, record_spot, submitted};
+use crate::support::frames::{
+    Coverage, DirectionalFrame, OmniFrame, PoolFrame, RecordFrame, SpotFrame,
+};
 use crate::support::gpu::{Gpu, gpu};
 use crate::support::picture::{COLOR, color_pass, color_target};
 use crate::support::probe::record;
@@ -267,7 +269,7 @@ fn a_pool_shows_one_of_its_lights() {
         receivers: &BEYOND,
         max_views: None,
     };
-    submitted(gpu, |encoder| pool.record(&gpu.device, encoder, &frame)).expect("a valid frame");
+    submitted(gpu, |encoder| pool.record_frame(encoder, &frame)).expect("a valid frame");
     let draw = |what| picture(gpu, pool.source(), what, CROSS);
     assert!(draw(DebugPicture::PoolCross(1)).expect("a light") == wanted);
     // A slot without a light is white all over its cells.

@@ -2,11 +2,11 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, CasterError, CasterPipeline, CasterPipelineDescriptor, Coverage, DepthFormat,
-    DirectionalFrame, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    ShadowCaster, ShadowError,
+    Aabb, CasterError, CasterPipeline, CasterPipelineDescriptor, DepthFormat, DirectionalLight,
+    DirectionalShadow, DirectionalShadowDescriptor, ShadowCaster, ShadowError,
 };
 
+use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};
 use crate::support::gpu::{Gpu, gpu};
 use crate::support::probe::{Point, SunProbe, record};
 use crate::support::readback;
@@ -113,11 +113,11 @@ fn casters_of_another_format_are_refused() {
     let mut shadow = sun(gpu, DepthFormat::Unorm16);
     let casters: [&dyn ShadowCaster; 2] = [&good, &bad];
     let mut encoder = gpu.encoder();
-    let refused = shadow.record(&gpu.device, &mut encoder, &frame(&casters));
+    let refused = shadow.record_frame(&mut encoder, &frame(&casters));
     assert_eq!(
         refused.expect_err("a caster of another format"),
         ShadowError::CasterFormat {
-            field: "DirectionalFrame::casters",
+            field: "ShadowFrameDescriptor::casters",
             index: 1,
             format: DepthFormat::Unorm16,
         }

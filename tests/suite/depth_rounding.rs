@@ -3,10 +3,10 @@
 
 use glam::{DMat4, DVec2, DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, Coverage, DepthFormat, DirectionalFrame, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor,
+    Aabb, DepthFormat, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
 };
 
+use crate::support::frames::{Coverage, DirectionalFrame};
 use crate::support::gpu::gpu;
 use crate::support::probe::record;
 use crate::support::random::Random;

@@ -1,11 +1,9 @@
 //! The depth texture as an engine gets it: what the getters say of it, and that it can be copied.
 
 use glam::{DVec3, Vec3};
-use wgpu_shadows::{
-    Aabb, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor,
-};
+use wgpu_shadows::{Aabb, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor};
 
+use crate::support::frames::{Coverage, DirectionalFrame};
 use crate::support::gpu::vulkan;
 use crate::support::probe::record;
 use crate::support::readback;

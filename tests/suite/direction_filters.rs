@@ -8,11 +8,12 @@
 use glam::{DVec2, DVec3, Vec3};
 use wgpu_shadows::reference::{self, DepthLayer, Receiver};
 use wgpu_shadows::{
-    Aabb, Bias, Filter, OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowViewUniform,
+    Aabb, Bias, Filter, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowViewUniform,
 };
 
 use crate::support::ask::{Ask, record_omni};
 use crate::support::camera::Camera;
+use crate::support::frames::OmniFrame;
 use crate::support::gpu::gpu;
 use crate::support::probe::Point;
 use crate::support::random::Random;

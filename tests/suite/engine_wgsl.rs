@@ -3,11 +3,11 @@
 use glam::{DVec3, Mat4, Vec3};
 use wgpu::util::DeviceExt;
 use wgpu_shadows::{
-    Aabb, CasterPipeline, CasterPipelineDescriptor, CasterVertex, Coverage, DirectionalFrame,
-    DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Revision, ShadowCaster,
-    ShadowView, ViewStatus,
+    Aabb, CasterPipeline, CasterPipelineDescriptor, CasterVertex, DirectionalLight,
+    DirectionalShadow, DirectionalShadowDescriptor, Revision, ShadowCaster, ShadowView, ViewStatus,
 };
 
+use crate::support::frames::{Coverage, DirectionalFrame};
 use crate::support::gpu::{Gpu, gpu};
 use crate::support::probe::{Point, SunProbe, record};
 use crate::support::scene::{Mesh, default_pipeline};

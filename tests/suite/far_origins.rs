@@ -3,14 +3,14 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, MeshCaster, OmniFrame, OmniLight, OmniShadow,
-    OmniShadowDescriptor, ShadowCaster, ShadowError, ShadowView, ShadowViewUniform, SpotFrame,
+    Aabb, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, MeshCaster, OmniLight,
+    OmniShadow, OmniShadowDescriptor, ShadowCaster, ShadowError, ShadowView, ShadowViewUniform,
     SpotLight, SpotShadow, SpotShadowDescriptor, Stability, ViewStatus,
 };
 
 use crate::support::ask::{Ask, record_omni, record_spot, submitted};
 use crate::support::camera::Camera;
+use crate::support::frames::{Coverage, DirectionalFrame, OmniFrame, RecordFrame, SpotFrame};
 use crate::support::gpu::gpu;
 use crate::support::probe::{Point, SunProbe};
 use crate::support::report::assert_whole;
@@ -210,7 +210,7 @@ fn scan(case: &Case, scene: &Scene, casters: &[MeshCaster]) -> usize {
             casters: &casters,
             receivers: &[],
         };
-        let record = submitted(gpu, |encoder| shadow.record(&gpu.device, encoder, &frame));
+        let record = submitted(gpu, |encoder| shadow.record_frame(encoder, &frame));
         let spacing = f64::EPSILON * origin.length();
         let report = match record {
             Ok(report) => report,
@@ -282,7 +282,7 @@ fn an_empty_world_is_empty_at_any_origin() {
                 casters: &[],
                 receivers: &[Aabb::new(Vec3::splat(-1.0), Vec3::splat(1.0))],
             };
-            let record = submitted(gpu, |encoder| shadow.record(&gpu.device, encoder, &frame));
+            let record = submitted(gpu, |encoder| shadow.record_frame(encoder, &frame));
             let report = record.expect("nothing to refuse");
             assert_eq!(report.views[0].status, ViewStatus::Empty);
             assert_whole(&report, &format!("{origin}"));

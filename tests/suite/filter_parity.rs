@@ -9,10 +9,11 @@ use bytemuck::Zeroable;
 use glam::{DVec2, DVec3, DVec4, Mat4, Vec3, Vec4};
 use wgpu_shadows::reference::{self, DepthLayer, Receiver};
 use wgpu_shadows::{
-    Aabb, Bias, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, Filter, ShadowViewUniform,
+    Aabb, Bias, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter,
+    ShadowViewUniform,
 };
 
+use crate::support::frames::{Coverage, DirectionalFrame};
 use crate::support::gpu::{Gpu, gpu};
 use crate::support::probe::{Point, SunProbe, record};
 use crate::support::random::Random;

@@ -9,9 +9,10 @@ use glam::DVec3;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
 use wgpu_shadows::reference::receiver;
-use wgpu_shadows::{Aabb, Bias, Coverage, Filter};
+use wgpu_shadows::{Aabb, Bias, Filter};
 
 use crate::support::camera::{Camera, Lens, Pose};
+use crate::support::frames::Coverage;
 use crate::support::gpu::gpu;
 use crate::support::probe::{Point, SunProbe};
 use crate::support::random_scene::{Placed, World, world};

@@ -2,11 +2,12 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, CameraView, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, ShadowCaster, ShadowError,
+    Aabb, CameraView, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    ShadowCaster, ShadowError,
 };
 
 use crate::support::camera::Camera;
+use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};
 use crate::support::gpu::gpu;
 use crate::support::probe::{Point, SunProbe, record};
 use crate::support::scene::{Mesh, default_pipeline};
@@ -70,7 +71,7 @@ impl Stage {
             self.shadow.view_uniforms().to_vec(),
         );
         let mut encoder = gpu().encoder();
-        let result = self.shadow.record(&gpu().device, &mut encoder, frame);
+        let result = self.shadow.record_frame(&mut encoder, frame);
         let error = result.expect_err("a bad frame").clone();
         gpu().submit(encoder);
         let after = (
@@ -112,15 +113,15 @@ fn numbers_that_are_not_finite() {
         ..good
     };
     let cases = [
-        (bad_origin, "DirectionalFrame::origin", "[0, inf, 0]"),
+        (bad_origin, "ShadowFrameDescriptor::origin", "[0, inf, 0]"),
         (
             with_light(NAN, Vec3::Y),
-            "DirectionalFrame::light.direction",
+            "DirectionalLight::direction",
             "[NaN, 2, 3]",
         ),
         (
             with_light(Vec3::NEG_Y, Vec3::X * f32::NEG_INFINITY),
-            "DirectionalFrame::light.up",
+            "DirectionalLight::up",
             "[-inf, NaN, NaN]",
         ),
     ];
@@ -142,8 +143,8 @@ fn directions_without_length() {
     let casters: [&dyn ShadowCaster; 1] = [&slab];
     let good = good_frame(&casters);
     let cases = [
-        (Vec3::ZERO, Vec3::Y, "DirectionalFrame::light.direction"),
-        (Vec3::NEG_Y, Vec3::ZERO, "DirectionalFrame::light.up"),
+        (Vec3::ZERO, Vec3::Y, "DirectionalLight::direction"),
+        (Vec3::NEG_Y, Vec3::ZERO, "DirectionalLight::up"),
     ];
     for (direction, up, field) in cases {
         let frame = DirectionalFrame {
@@ -167,7 +168,7 @@ fn bounds_that_are_not_finite() {
     let cases = [
         (
             good_frame(&casters),
-            "DirectionalFrame::casters",
+            "ShadowFrameDescriptor::casters",
             1,
             "[NaN, 2, 3]..[4, 4, 4]",
         ),
@@ -176,7 +177,7 @@ fn bounds_that_are_not_finite() {
                 receivers: &receivers,
                 ..good_frame(&one_caster)
             },
-            "DirectionalFrame::receivers",
+            "ShadowFrameDescriptor::receivers",
             2,
             "[0, 0, 0]..[inf, inf, inf]",
         ),
@@ -185,7 +186,7 @@ fn bounds_that_are_not_finite() {
                 coverage: Coverage::Bounds(endless),
                 ..good_frame(&one_caster)
             },
-            "DirectionalFrame::coverage",
+            "ShadowFrameDescriptor::coverage",
             0,
             "[0, 0, 0]..[inf, inf, inf]",
         ),
@@ -215,7 +216,7 @@ fn cameras_that_see_nothing() {
                 view_from_render: Mat4::NAN,
                 ..camera
             },
-            "DirectionalFrame::coverage.view_from_render",
+            "CameraView::view_from_render",
             Mat4::NAN,
         ),
         (
@@ -223,7 +224,7 @@ fn cameras_that_see_nothing() {
                 view_from_render: flat,
                 ..camera
             },
-            "DirectionalFrame::coverage.view_from_render",
+            "CameraView::view_from_render",
             flat,
         ),
         (
@@ -231,7 +232,7 @@ fn cameras_that_see_nothing() {
                 clip_from_view: Mat4::ZERO,
                 ..camera
             },
-            "DirectionalFrame::coverage.clip_from_view",
+            "CameraView::clip_from_view",
             Mat4::ZERO,
         ),
     ];
@@ -241,12 +242,13 @@ fn cameras_that_see_nothing() {
             ..good_frame(&casters)
         };
         let value = matrix.to_string();
-        let message = format!("{field} must be finite and invertible, got {value}");
-        stage.assert_refused(
-            &frame,
-            &ShadowError::CameraMatrix { field, value },
-            &message,
-        );
+        let message = format!("{field} of camera 0 must be finite and invertible, got {value}");
+        let wanted = ShadowError::CameraMatrix {
+            field,
+            camera: 0,
+            value,
+        };
+        stage.assert_refused(&frame, &wanted, &message);
     }
     for distance in [0.0, -3.5, f32::NAN, f32::NEG_INFINITY] {
         let frame = DirectionalFrame {
@@ -254,13 +256,12 @@ fn cameras_that_see_nothing() {
             ..good_frame(&casters)
         };
         let wanted = ShadowError::OutOfRange {
-            field: "DirectionalFrame::coverage.max_distance",
+            field: "CameraView::max_distance",
             rule: "above 0 (infinity allowed)",
             value: distance.to_string(),
         };
-        let message = format!(
-            "DirectionalFrame::coverage.max_distance must be above 0 (infinity allowed), got {distance}"
-        );
+        let message =
+            format!("CameraView::max_distance must be above 0 (infinity allowed), got {distance}");
         stage.assert_refused(&frame, &wanted, &message);
     }
 }

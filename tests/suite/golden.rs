@@ -3,12 +3,12 @@
 use glam::{DVec3, Vec3};
 use image::RgbaImage;
 use wgpu_shadows::{
-    Aabb, Bias, CameraView, Coverage, DebugPicture, DebugView, DirectionalFrame, DirectionalLight,
-    DirectionalShadow, DirectionalShadowDescriptor, Filter, ShadowBindings,
-    ShadowBindingsDescriptor,
+    Aabb, Bias, CameraView, DebugPicture, DebugView, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, Filter, ShadowBindings, ShadowBindingsDescriptor,
 };
 
 use crate::support::camera::Camera;
+use crate::support::frames::{Coverage, DirectionalFrame};
 use crate::support::golden::{Limits, assert_golden};
 use crate::support::gpu::{Gpu, gpu};
 use crate::support::picture::{COLOR, color_pass, color_target, depth_target, scene_pass};

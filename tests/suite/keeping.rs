@@ -2,12 +2,12 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, CasterPipeline, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, MeshCaster, Revision, ShadowCaster, ShadowReport, ShadowView,
-    ViewStatus,
+    Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    MeshCaster, Revision, ShadowCaster, ShadowReport, ShadowView, ViewStatus,
 };
 
 use crate::support::camera::Camera;
+use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};
 use crate::support::gpu::{Gpu, gpu};
 use crate::support::probe::{Point, SunProbe, record};
 use crate::support::readback;
@@ -195,7 +195,7 @@ fn invalidated_maps_are_drawn_again() {
     let mut lost = stage.gpu.encoder();
     let casters: [&dyn ShadowCaster; 1] = [&slab];
     let frame = stage.frame(&casters);
-    let report = stage.shadow.record(&stage.gpu.device, &mut lost, &frame);
+    let report = stage.shadow.record_frame(&mut lost, &frame);
     assert_eq!(report.expect("a valid frame").passes, 1);
     drop(lost);
     assert!(!stage.is_dark_below(0.0));
@@ -332,12 +332,12 @@ fn frames_in_flight_do_not_mix() {
     let mut frame = stage.frame(&casters);
     stage
         .shadow
-        .record(&gpu.device, &mut first, &frame)
+        .record_frame(&mut first, &frame)
         .expect("a valid frame");
     frame.light = DirectionalLight::new(Vec3::new(-1.5, -1.0, 0.25));
     stage
         .shadow
-        .record(&gpu.device, &mut second, &frame)
+        .record_frame(&mut second, &frame)
         .expect("a valid frame");
     gpu.submit(first);
     assert!(stage.is_dark_below(0.0), "the first frame's shadow");

@@ -3,13 +3,13 @@
 
 use glam::{DMat3, DVec3, Mat4, Quat, Vec3};
 use wgpu_shadows::{
-    Aabb, CasterPipeline, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, MeshCaster, PoolDescriptor, PoolFrame, PoolLight, Revision,
-    ShadowCaster, ShadowReport, ShadowView, SpotFrame, SpotLight, SpotShadow, SpotShadowDescriptor,
-    SpotShadowPool, ViewStatus,
+    Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    MeshCaster, PoolDescriptor, PoolLight, Revision, ShadowCaster, ShadowReport, ShadowView,
+    SpotLight, SpotShadow, SpotShadowDescriptor, SpotShadowPool, ViewStatus,
 };
 
 use crate::support::ask::{Ask, record_spot, submitted};
+use crate::support::frames::{Coverage, DirectionalFrame, PoolFrame, RecordFrame, SpotFrame};
 use crate::support::gpu::{Gpu, gpu, vulkan};
 use crate::support::probe::{Point, SunProbe, record};
 use crate::support::random::Random;
@@ -287,8 +287,7 @@ fn a_spot_put_off_while_the_origin_moves() {
                 receivers: &[],
                 max_views,
             };
-            submitted(gpu, |encoder| pool.record(&gpu.device, encoder, &frame))
-                .expect("a valid frame")
+            submitted(gpu, |encoder| pool.record_frame(encoder, &frame)).expect("a valid frame")
         };
         frame(DVec3::ZERO, None);
         let report = frame(wall.center, Some(1));

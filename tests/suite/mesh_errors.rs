@@ -2,11 +2,12 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, CasterError, CasterPipeline, CasterPipelineDescriptor, CasterVertex, Coverage,
-    DeviceRefusal, DirectionalFrame, DirectionalLight, DirectionalShadow, MeshCaster,
-    MeshCasterDescriptor, MeshIndices, ShadowCaster,
+    Aabb, CasterError, CasterPipeline, CasterPipelineDescriptor, CasterVertex, DeviceRefusal,
+    DirectionalLight, DirectionalShadow, MeshCaster, MeshCasterDescriptor, MeshIndices,
+    ShadowCaster,
 };
 
+use crate::support::frames::{Coverage, DirectionalFrame};
 use crate::support::gpu::{Gpu, gpu};
 use crate::support::probe::record;
 use crate::support::scene::{Mesh, default_pipeline};

@@ -44,6 +44,7 @@ mod pool_budget;
 mod pool_importance;
 mod receiver_parity;
 mod reference_limits;
+mod scene;
 mod self_shadow;
 mod shader_validation;
 mod slice_report;

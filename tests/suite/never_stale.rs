@@ -3,13 +3,13 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, CasterPipeline, CasterPipelineDescriptor, Coverage, DepthFormat, DirectionalFrame,
-    DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, MeshCaster, OmniFrame,
-    OmniLight, OmniShadow, OmniShadowDescriptor, ShadowCaster, ShadowReport, ShadowView,
-    ViewReport, ViewStatus,
+    Aabb, CasterPipeline, CasterPipelineDescriptor, DepthFormat, DirectionalLight,
+    DirectionalShadow, DirectionalShadowDescriptor, MeshCaster, OmniLight, OmniShadow,
+    OmniShadowDescriptor, ShadowCaster, ShadowReport, ShadowView, ViewReport, ViewStatus,
 };
 
 use crate::support::camera::Camera;
+use crate::support::frames::{Coverage, DirectionalFrame, OmniFrame, RecordFrame};
 use crate::support::gpu::{Gpu, vulkan};
 use crate::support::multiview::{device, is_right};
 use crate::support::random::Random;
@@ -170,16 +170,16 @@ fn kept_maps_of_a_sun_are_what_would_be_drawn() {
             };
             if random.unit() < 0.02 {
                 let mut thrown_away = gpu.encoder();
-                let report = kept.record(&gpu.device, &mut thrown_away, &frame);
+                let report = kept.record_frame(&mut thrown_away, &frame);
                 report.expect("a valid frame");
                 drop(thrown_away);
                 kept.invalidate();
             }
             let mut encoder = gpu.encoder();
-            let report = kept.record(&gpu.device, &mut encoder, &frame);
+            let report = kept.record_frame(&mut encoder, &frame);
             ways.count(report.expect("a valid frame"));
             fresh.invalidate();
-            let report = fresh.record(&gpu.device, &mut encoder, &frame);
+            let report = fresh.record_frame(&mut encoder, &frame);
             let report = report.expect("a valid frame").clone();
             kept_bytes.copy(&mut encoder);
             fresh_bytes.copy(&mut encoder);
@@ -237,13 +237,13 @@ fn kept_faces_of_a_lamp_are_what_would_be_drawn() {
         };
         if random.unit() < 0.02 {
             let mut thrown_away = gpu.encoder();
-            let report = kept.record(&gpu.device, &mut thrown_away, &frame);
+            let report = kept.record_frame(&mut thrown_away, &frame);
             report.expect("a valid frame");
             drop(thrown_away);
             kept.invalidate();
         }
         let mut encoder = gpu.encoder();
-        let report = kept.record(&gpu.device, &mut encoder, &frame);
+        let report = kept.record_frame(&mut encoder, &frame);
         ways.count(report.expect("a valid frame"));
         fresh.invalidate();
         let untold: Vec<_> = list.iter().map(|caster| Untold(*caster)).collect();
@@ -252,7 +252,7 @@ fn kept_faces_of_a_lamp_are_what_would_be_drawn() {
             casters: &untold,
             ..frame
         };
-        let report = fresh.record(&gpu.device, &mut encoder, &frame);
+        let report = fresh.record_frame(&mut encoder, &frame);
         let report = report.expect("a valid frame").clone();
         let drawn = |view: &&ViewReport| view.status == ViewStatus::Drawn;
         let drawn = report.views.iter().filter(drawn).count() as u32;

@@ -3,12 +3,13 @@
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
-    Aabb, Bias, CameraView, Filter, OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor,
-    ShadowReport, ViewStatus,
+    Aabb, Bias, CameraView, Filter, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowReport,
+    ViewStatus,
 };
 
 use crate::support::ask::{Ask, record_omni};
 use crate::support::camera::Camera;
+use crate::support::frames::OmniFrame;
 use crate::support::gpu::{Gpu, gpu};
 use crate::support::local_truth::settled;
 use crate::support::probe::Point;

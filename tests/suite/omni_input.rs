@@ -2,10 +2,11 @@
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
-    Aabb, Filter, OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowError, ViewStatus,
+    Aabb, Filter, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowError, ViewStatus,
 };
 
 use crate::support::ask::{Ask, record_omni};
+use crate::support::frames::OmniFrame;
 use crate::support::gpu::gpu;
 use crate::support::probe::Point;
 use crate::support::random::Random;
@@ -118,12 +119,12 @@ fn frames_that_are_refused_change_nothing() {
         value: value.to_owned(),
     };
     let range = |value: &str| ShadowError::OutOfRange {
-        field: "OmniFrame::light.range",
+        field: "OmniLight::range",
         rule: "above 0 (infinity allowed)",
         value: value.to_owned(),
     };
     let spoilt = [Aabb::new(Vec3::splat(f32::NAN), Vec3::ONE)];
-    let position = "OmniFrame::light.position_world";
+    let position = "OmniLight::position_world";
     let cases = [
         (
             at(DVec3::new(f64::NAN, 1.0, 2.0)),
@@ -138,7 +139,7 @@ fn frames_that_are_refused_change_nothing() {
                 origin: DVec3::NAN,
                 ..good
             },
-            not_finite("OmniFrame::origin", "[NaN, NaN, NaN]"),
+            not_finite("ShadowFrameDescriptor::origin", "[NaN, NaN, NaN]"),
         ),
         (reaching(0.0), range("0")),
         (reaching(-2.5), range("-2.5")),
@@ -149,7 +150,7 @@ fn frames_that_are_refused_change_nothing() {
                 ..good
             },
             ShadowError::BoundsNotFinite {
-                field: "OmniFrame::receivers",
+                field: "ShadowFrameDescriptor::receivers",
                 index: 0,
                 value: "[NaN, NaN, NaN]..[1, 1, 1]".to_owned(),
             },

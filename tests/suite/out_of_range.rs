@@ -3,11 +3,12 @@
 use glam::{DVec2, DVec3, Mat4, Vec3};
 use wgpu_shadows::reference::receiver;
 use wgpu_shadows::{
-    Aabb, Bias, CameraView, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, Filter,
+    Aabb, Bias, CameraView, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    Filter,
 };
 
 use crate::support::camera::Camera;
+use crate::support::frames::{Coverage, DirectionalFrame};
 use crate::support::gpu::{Gpu, GpuRequest, gpu};
 use crate::support::probe::{Point, SunProbe, record};
 use crate::support::random::Random;

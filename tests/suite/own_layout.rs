@@ -2,12 +2,13 @@
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
-    Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor, shader,
+    DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniLight, OmniShadow,
+    OmniShadowDescriptor, shader,
 };
 
 use crate::support::ask::{Ask, record_omni};
 use crate::support::camera::Camera;
+use crate::support::frames::{Coverage, DirectionalFrame, OmniFrame};
 use crate::support::gpu::{Gpu, gpu};
 use crate::support::probe::{Point, PointShader, record};
 use crate::support::random::Random;

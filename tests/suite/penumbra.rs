@@ -10,12 +10,13 @@ use std::f64::consts::PI;
 use glam::{DVec2, DVec3, Vec3};
 use wgpu_shadows::reference::{self, DepthLayer, Receiver};
 use wgpu_shadows::{
-    Aabb, Bias, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, Filter, SpotFrame, SpotLight, SpotShadow, SpotShadowDescriptor,
+    Aabb, Bias, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter,
+    SpotLight, SpotShadow, SpotShadowDescriptor,
 };
 
 use crate::suite::filter_parity::{Lit, at_border, place, points, scene};
 use crate::support::ask::{Ask, record_spot};
+use crate::support::frames::{Coverage, DirectionalFrame, SpotFrame};
 use crate::support::gpu::{Gpu, gpu};
 use crate::support::probe::{Point, SunProbe, record};
 use crate::support::readback;

@@ -2,12 +2,12 @@
 
 use glam::{DVec3, Vec2};
 use wgpu_shadows::{
-    Bias, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, Filter, reference,
+    Bias, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter, reference,
 };
 
 use super::penumbra::sun_profile;
 use crate::support::camera::Camera;
+use crate::support::frames::{Coverage, DirectionalFrame};
 use crate::support::gpu::gpu;
 use crate::support::probe::record;
 use crate::support::scene::{Mesh, Scene};

@@ -2,13 +2,13 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor, OmniShadowPool, PoolDescriptor,
-    PoolFrame, PoolLight, ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowError,
-    ShadowReport, ShadowSlot, SpotFrame, SpotLight, SpotShadow, SpotShadowDescriptor,
-    SpotShadowPool,
+    Aabb, OmniLight, OmniShadow, OmniShadowDescriptor, OmniShadowPool, PoolDescriptor, PoolLight,
+    ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowError, ShadowReport, ShadowSlot,
+    SpotLight, SpotShadow, SpotShadowDescriptor, SpotShadowPool,
 };
 
 use crate::support::ask::{Ask, record_omni, record_spot, submitted};
+use crate::support::frames::{OmniFrame, PoolFrame, RecordFrame, SpotFrame};
 use crate::support::gpu::{Gpu, gpu};
 use crate::support::probe::Point;
 use crate::support::random::Random;
@@ -57,7 +57,7 @@ pub(super) fn record(
     pool: &mut OmniShadowPool,
     frame: &PoolFrame<'_, OmniLight>,
 ) -> Result<ShadowReport, ShadowError> {
-    submitted(gpu, |encoder| pool.record(&gpu.device, encoder, frame))
+    submitted(gpu, |encoder| pool.record_frame(encoder, frame))
 }
 
 #[test]
@@ -76,7 +76,7 @@ fn slots_are_given_out_once() {
     assert_eq!(next.index(), 1);
     // The light that had the slot before has it no longer, though the index is in use.
     assert_eq!(pool.remove(slots[1]), Err(unknown("slot")));
-    let field = "PoolFrame::lights.slot";
+    let field = "PoolLight::slot";
     let refused = |pool: &mut OmniShadowPool, lights: &[PoolLight<OmniLight>]| {
         record(gpu, pool, &frame(lights, &[])).expect_err("a bad slot")
     };
@@ -91,7 +91,7 @@ fn slots_are_given_out_once() {
     assert_eq!(refused(&mut pool, &foreign), unknown(field));
     for importance in [-1.0, f32::NAN, f32::INFINITY] {
         let wanted = ShadowError::OutOfRange {
-            field: "PoolFrame::lights.importance",
+            field: "PoolLight::importance",
             rule: "finite and at least 0",
             value: importance.to_string(),
         };
@@ -218,10 +218,7 @@ fn spots_see_what_they_see_alone() {
         importance: 1.0,
     });
     let pool_frame = frame(&lights, &list);
-    submitted(gpu, |encoder| {
-        pool.record(&gpu.device, encoder, &pool_frame)
-    })
-    .expect("a valid frame");
+    submitted(gpu, |encoder| pool.record_frame(encoder, &pool_frame)).expect("a valid frame");
     let points = points_on(&scene, 3000);
     for light in lights {
         let descriptor = SpotShadowDescriptor {

@@ -2,12 +2,12 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, MeshCaster, OmniLight, OmniShadowPool, PoolFrame, PoolLight, ShadowCaster, ViewReport,
-    ViewStatus,
+    Aabb, MeshCaster, OmniLight, OmniShadowPool, PoolLight, ShadowCaster, ViewReport, ViewStatus,
 };
 
 use crate::suite::pool::{bits, frame, lamp, pool, record};
 use crate::support::ask::Ask;
+use crate::support::frames::{PoolFrame, RecordFrame};
 use crate::support::gpu::{Gpu, gpu, vulkan};
 use crate::support::probe::Point;
 use crate::support::scene::{Mesh, default_pipeline};
@@ -219,7 +219,7 @@ fn a_light_whose_map_was_thrown_away_is_lit_until_its_turn() {
     let casters: Vec<&dyn ShadowCaster> = row.slabs.iter().map(|slab| slab as _).collect();
     let mut thrown_away = gpu.encoder();
     row.pool
-        .record(&gpu.device, &mut thrown_away, &frame(&lights, &casters))
+        .record_frame(&mut thrown_away, &frame(&lights, &casters))
         .expect("a valid frame");
     drop(thrown_away);
     row.pool.invalidate();

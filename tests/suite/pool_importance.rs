@@ -2,11 +2,11 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, PoolDescriptor, PoolFrame, PoolLight, Revision, ShadowCaster, SpotLight, SpotShadowPool,
-    ViewStatus,
+    Aabb, PoolDescriptor, PoolLight, Revision, ShadowCaster, SpotLight, SpotShadowPool, ViewStatus,
 };
 
 use crate::suite::pool::frame;
+use crate::support::frames::{PoolFrame, RecordFrame};
 use crate::support::gpu::gpu;
 use crate::support::scene::{Mesh, default_pipeline};
 use crate::support::watched::Watched;
@@ -72,7 +72,7 @@ fn drawn(importances: &[f32], max_views: u32, frames: usize) -> Vec<Vec<usize>> 
             ..frame(&lights, &casters)
         };
         let report = pool
-            .record(&gpu.device, &mut encoder, &frame)
+            .record_frame(&mut encoder, &frame)
             .expect("a valid frame");
         for view in &report.views {
             match view.status {

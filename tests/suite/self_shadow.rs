@@ -5,10 +5,11 @@
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
-    Aabb, Bias, Coverage, DepthFormat, DirectionalFrame, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, Filter, ShadowReport,
+    Aabb, Bias, DepthFormat, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    Filter, ShadowReport,
 };
 
+use crate::support::frames::{Coverage, DirectionalFrame};
 use crate::support::gpu::{Gpu, gpu};
 use crate::support::probe::{Point, SunProbe, record};
 use crate::support::random::Random;

@@ -2,11 +2,11 @@
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
-    Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    ShadowReport, Stability,
+    DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, ShadowReport, Stability,
 };
 
 use crate::support::camera::{Camera, Lens};
+use crate::support::frames::{Coverage, DirectionalFrame};
 use crate::support::gpu::gpu;
 use crate::support::probe::record;
 use crate::support::random::Random;

@@ -4,9 +4,10 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::{DVec3, Vec3};
-use wgpu_shadows::{Aabb, Bias, Filter, SpotFrame, SpotLight, SpotShadow, SpotShadowDescriptor};
+use wgpu_shadows::{Aabb, Bias, Filter, SpotLight, SpotShadow, SpotShadowDescriptor};
 
 use crate::support::ask::{Ask, record_spot};
+use crate::support::frames::SpotFrame;
 use crate::support::gpu::{Gpu, gpu};
 use crate::support::local_truth::settled;
 use crate::support::probe::Point;

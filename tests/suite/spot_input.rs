@@ -1,11 +1,10 @@
 //! Bad input of spot lights: refused by field and value, and nothing changes.
 
 use glam::{DVec3, Vec3};
-use wgpu_shadows::{
-    Aabb, Filter, ShadowError, SpotFrame, SpotLight, SpotShadow, SpotShadowDescriptor,
-};
+use wgpu_shadows::{Aabb, Filter, ShadowError, SpotLight, SpotShadow, SpotShadowDescriptor};
 
 use crate::support::ask::record_spot;
+use crate::support::frames::SpotFrame;
 use crate::support::gpu::gpu;
 use crate::support::scene::{Mesh, Scene};
 
@@ -42,14 +41,14 @@ fn bad_spots_are_refused() {
             ..good
         };
         let error = ShadowError::OutOfRange {
-            field: "SpotFrame::light.outer_angle_radians",
+            field: "SpotLight::outer_angle_radians",
             rule: "above 0 and below π/2",
             value: value.to_owned(),
         };
         (light, error)
     };
     let toward = |direction: Vec3| SpotLight { direction, ..good };
-    let field = "SpotFrame::light.direction";
+    let field = "SpotLight::direction";
     let half_turn = std::f32::consts::FRAC_PI_2;
     let cases = [
         angle(0.0, "0"),
@@ -67,7 +66,7 @@ fn bad_spots_are_refused() {
         (
             SpotLight { range: 0.0, ..good },
             ShadowError::OutOfRange {
-                field: "SpotFrame::light.range",
+                field: "SpotLight::range",
                 rule: "above 0 (infinity allowed)",
                 value: "0".to_owned(),
             },
@@ -78,7 +77,7 @@ fn bad_spots_are_refused() {
                 ..good
             },
             ShadowError::NotFinite {
-                field: "SpotFrame::light.position_world",
+                field: "SpotLight::position_world",
                 value: "[0, inf, 0]".to_owned(),
             },
         ),

@@ -2,11 +2,12 @@
 
 use glam::DVec3;
 use wgpu_shadows::{
-    CascadeSplit, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, ShadowError, Stability, reference,
+    CascadeSplit, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, ShadowError,
+    Stability, reference,
 };
 
 use crate::support::camera::Camera;
+use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};
 use crate::support::gpu::gpu;
 use crate::support::probe::{Point, SunProbe, record};
 use crate::support::random::Random;
@@ -179,16 +180,16 @@ fn a_sphere_around_an_endless_view_is_refused() {
     let mut encoder = gpu().encoder();
     let endless = frame(&list, &walker(0), f32::INFINITY);
     let error = shadow
-        .record(&gpu().device, &mut encoder, &endless)
+        .record_frame(&mut encoder, &endless)
         .expect_err("no end");
-    let named = "DirectionalFrame::coverage.max_distance";
+    let named = "CameraView::max_distance";
     assert!(
         matches!(&error, ShadowError::OutOfRange { field, .. } if *field == named),
         "{error}"
     );
     assert!(
         shadow
-            .record(&gpu().device, &mut encoder, &frame(&list, &walker(0), 50.0))
+            .record_frame(&mut encoder, &frame(&list, &walker(0), 50.0))
             .is_ok()
     );
 }

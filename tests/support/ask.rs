@@ -1,10 +1,11 @@
 //! Asks any set of lights through `ShadowBindings`, and records their frames.
 
 use wgpu_shadows::{
-    OmniFrame, OmniShadow, ShadowBindings, ShadowBindingsDescriptor, ShadowError, ShadowReport,
-    ShadowSource, SpotFrame, SpotShadow,
+    OmniShadow, ShadowBindings, ShadowBindingsDescriptor, ShadowError, ShadowReport, ShadowSource,
+    SpotShadow,
 };
 
+use crate::support::frames::{OmniFrame, RecordFrame, SpotFrame};
 use crate::support::gpu::Gpu;
 use crate::support::probe::{Point, PointShader};
 
@@ -62,7 +63,7 @@ pub fn record_omni(
     shadow: &mut OmniShadow,
     frame: &OmniFrame<'_>,
 ) -> Result<ShadowReport, ShadowError> {
-    submitted(gpu, |encoder| shadow.record(&gpu.device, encoder, frame))
+    submitted(gpu, |encoder| shadow.record_frame(encoder, frame))
 }
 
 /// Records and submits a frame of a spot light.
@@ -71,5 +72,5 @@ pub fn record_spot(
     shadow: &mut SpotShadow,
     frame: &SpotFrame<'_>,
 ) -> Result<ShadowReport, ShadowError> {
-    submitted(gpu, |encoder| shadow.record(&gpu.device, encoder, frame))
+    submitted(gpu, |encoder| shadow.record_frame(encoder, frame))
 }

@@ -2,10 +2,11 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, CameraView, CasterPipeline, CasterPipelineDescriptor, MeshCaster, OmniFrame, OmniLight,
-    OmniShadow, OmniShadowDescriptor, Revision, ShadowCaster, ShadowReport, ShadowView, ViewStatus,
+    Aabb, CameraView, CasterPipeline, CasterPipelineDescriptor, MeshCaster, OmniLight, OmniShadow,
+    OmniShadowDescriptor, Revision, ShadowCaster, ShadowReport, ShadowView, ViewStatus,
 };
 
+use crate::support::frames::{OmniFrame, RecordFrame};
 use crate::support::gpu::Gpu;
 use crate::support::multiview::{device, is_right, portable};
 use crate::support::readback;
@@ -117,7 +118,7 @@ impl<'a> Stage<'a> {
         };
         let report = self
             .shadow
-            .record(&self.gpu.device, &mut encoder, &frame)
+            .record_frame(&mut encoder, &frame)
             .expect("a valid frame")
             .clone();
         self.gpu.submit(encoder);

@@ -4,6 +4,7 @@ pub mod ask;
 pub mod camera;
 pub mod cube_pair;
 pub mod figures;
+pub mod frames;
 pub mod golden;
 pub mod gpu;
 pub mod local_truth;

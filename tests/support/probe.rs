@@ -1,10 +1,9 @@
 //! Asks the library's WGSL for visibilities, from a compute shader in place of an engine's fragment shader.
 
 use glam::{DVec3, Vec3};
-use wgpu_shadows::{
-    DirectionalFrame, DirectionalShadow, ShadowBindings, ShadowBindingsDescriptor, ShadowReport,
-};
+use wgpu_shadows::{DirectionalShadow, ShadowBindings, ShadowBindingsDescriptor, ShadowReport};
 
+use crate::support::frames::{DirectionalFrame, RecordFrame};
 use crate::support::gpu::Gpu;
 use crate::support::readback;
 
@@ -187,7 +186,7 @@ pub fn record(
 ) -> ShadowReport {
     let mut encoder = gpu.encoder();
     let report = shadow
-        .record(&gpu.device, &mut encoder, frame)
+        .record_frame(&mut encoder, frame)
         .expect("a valid frame")
         .clone();
     gpu.submit(encoder);

@@ -3,11 +3,12 @@
 use glam::{DVec2, DVec3, Vec3};
 use proptest::prelude::*;
 use wgpu_shadows::{
-    Aabb, CameraView, CascadeSplit, Coverage, DirectionalFrame, DirectionalLight,
-    DirectionalShadow, DirectionalShadowDescriptor, ShadowReport,
+    Aabb, CameraView, CascadeSplit, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, ShadowReport,
 };
 
 use crate::support::camera::{Camera, Lens, Pose};
+use crate::support::frames::{Coverage, DirectionalFrame};
 use crate::support::gpu::Gpu;
 use crate::support::probe::record;
 use crate::support::random::Random;

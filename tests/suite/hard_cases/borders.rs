@@ -3,15 +3,15 @@
 use glam::{DVec3, Vec3};
 use wgpu_shadows::reference::receiver;
 use wgpu_shadows::{
-    Aabb, Bias, CascadeSplit, Coverage, DirectionalLight, DirectionalShadowDescriptor, Filter,
-    OmniLight, OmniShadowPool, PoolDescriptor, PoolFrame, PoolLight, ShadowCaster, SpotLight,
-    SpotShadowPool,
+    Aabb, Bias, CascadeSplit, DirectionalLight, DirectionalShadowDescriptor, Filter, OmniLight,
+    OmniShadowPool, PoolDescriptor, PoolLight, ShadowCaster, SpotLight, SpotShadowPool,
 };
 
 use super::stage::{SUM_ERROR, Sun, differ, scene};
 use super::table;
 use crate::support::ask::{Ask, submitted};
 use crate::support::camera::Camera;
+use crate::support::frames::{Coverage, PoolFrame, RecordFrame};
 use crate::support::gpu::gpu;
 use crate::support::probe::Point;
 use crate::support::random::Random;
@@ -188,14 +188,8 @@ fn no_light_of_a_pool_reads_its_neighbours() {
     let casters = &scene.list()[..];
     let spot_frame = pool_frame(&spot_lights, casters, &receivers);
     let lamp_frame = pool_frame(&lamp_lights, casters, &receivers);
-    submitted(gpu, |encoder| {
-        spots.record(&gpu.device, encoder, &spot_frame)
-    })
-    .expect("a frame");
-    submitted(gpu, |encoder| {
-        lamps.record(&gpu.device, encoder, &lamp_frame)
-    })
-    .expect("a frame");
+    submitted(gpu, |encoder| spots.record_frame(encoder, &spot_frame)).expect("a frame");
+    submitted(gpu, |encoder| lamps.record_frame(encoder, &lamp_frame)).expect("a frame");
     let mut random = Random::new(107);
     let directions: Vec<_> = (0..4000).map(|_| random.direction()).collect();
     let mut asked = 0;

@@ -2,11 +2,12 @@
 
 use glam::DVec3;
 use wgpu_shadows::reference::receiver;
-use wgpu_shadows::{Bias, CascadeSplit, Coverage, DirectionalShadowDescriptor, Filter};
+use wgpu_shadows::{Bias, CascadeSplit, DirectionalShadowDescriptor, Filter};
 
 use super::stage::{MARGIN, Sun, Verdict, bounds_of, boxes, level, scene, shining, world};
 use super::table;
 use crate::support::camera::Camera;
+use crate::support::frames::Coverage;
 use crate::support::gpu::gpu;
 use crate::support::random_scene::World;
 use crate::support::scene::Mesh;

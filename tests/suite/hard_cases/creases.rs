@@ -1,10 +1,11 @@
 //! Where two planes meet: a ridge does not shadow itself, and a valley only within the kernel of its crease.
 
 use glam::{DVec3, Vec3};
-use wgpu_shadows::{Aabb, Bias, Coverage, DirectionalShadowDescriptor, Filter};
+use wgpu_shadows::{Aabb, Bias, DirectionalShadowDescriptor, Filter};
 
 use super::stage::{Sun, scene, shining};
 use super::table;
+use crate::support::frames::Coverage;
 use crate::support::gpu::gpu;
 use crate::support::probe::Point;
 use crate::support::random::Random;

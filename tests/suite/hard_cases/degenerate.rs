@@ -2,13 +2,13 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, ShadowError, ViewStatus,
+    Aabb, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, ShadowError, ViewStatus,
 };
 
 use super::stage::{Sun, caster};
 use super::table;
 use crate::support::camera::Camera;
+use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};
 use crate::support::gpu::gpu;
 use crate::support::probe::Point;
 use crate::support::scene::Mesh;
@@ -48,7 +48,7 @@ fn frame(
         receivers,
     };
     let mut encoder = gpu.encoder();
-    let result = sun.shadow.record(&gpu.device, &mut encoder, &frame);
+    let result = sun.shadow.record_frame(&mut encoder, &frame);
     let status = result.map(|report| report.views[0].status);
     gpu.submit(encoder);
     status.map(|status| (status, sun.ask(&below())))
@@ -91,7 +91,10 @@ fn bounds_without_volume_or_without_end() {
         for bounds in endless {
             let as_caster = frame(&mut sun, down, coverage, bounds, &floor);
             let as_receiver = frame(&mut sun, down, coverage, flat, &[bounds]);
-            let fields = ["DirectionalFrame::casters", "DirectionalFrame::receivers"];
+            let fields = [
+                "ShadowFrameDescriptor::casters",
+                "ShadowFrameDescriptor::receivers",
+            ];
             for (result, wanted) in [as_caster, as_receiver].into_iter().zip(fields) {
                 assert!(
                     matches!(&result, Err(ShadowError::BoundsNotFinite { field, .. }) if *field == wanted),

@@ -1,13 +1,14 @@
 //! The same scenes in maps of 32 and of 16 bits, over short and long depth ranges.
 
 use glam::{DMat3, DVec3};
-use wgpu_shadows::{Aabb, Coverage, DepthFormat, DirectionalShadowDescriptor};
+use wgpu_shadows::{Aabb, DepthFormat, DirectionalShadowDescriptor};
 
 use super::stage::{
     MARGIN, Sun, Verdict, any_camera, bounds_of, boxes, differ, level, meshes, scene, shining,
     world,
 };
 use super::table;
+use crate::support::frames::Coverage;
 use crate::support::gpu::gpu;
 
 const FORMATS: [DepthFormat; 2] = [DepthFormat::Float32, DepthFormat::Unorm16];

@@ -1,14 +1,12 @@
 //! Cameras at and beyond the limits of what can be a camera.
 
 use glam::{DVec3, Mat4, Vec3};
-use wgpu_shadows::{
-    CascadeSplit, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadowDescriptor,
-    ShadowError,
-};
+use wgpu_shadows::{CascadeSplit, DirectionalLight, DirectionalShadowDescriptor, ShadowError};
 
 use super::stage::{Sun, boxes, level, meshes, scene};
 use super::table;
 use crate::support::camera::{Camera, Lens, Pose};
+use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};
 use crate::support::gpu::gpu;
 use crate::support::report::assert_whole;
 
@@ -86,7 +84,7 @@ fn any_lens_is_fitted_or_refused() {
                 receivers: &[],
             };
             let mut encoder = gpu.encoder();
-            let result = sun.shadow.record(&gpu.device, &mut encoder, &frame);
+            let result = sun.shadow.record_frame(&mut encoder, &frame);
             let result = result.map(|report| assert_whole(report, &name.to_string()));
             gpu.submit(encoder);
             let seen = sun.ask(&points);
@@ -143,15 +141,9 @@ fn what_is_no_camera_is_refused() {
         for view in [false, true] {
             let mut camera = fine;
             let (field, wanted) = if view {
-                (
-                    &mut camera.view_from_render,
-                    "DirectionalFrame::coverage.view_from_render",
-                )
+                (&mut camera.view_from_render, "CameraView::view_from_render")
             } else {
-                (
-                    &mut camera.clip_from_view,
-                    "DirectionalFrame::coverage.clip_from_view",
-                )
+                (&mut camera.clip_from_view, "CameraView::clip_from_view")
             };
             *field = matrix;
             let frame = DirectionalFrame {
@@ -163,7 +155,7 @@ fn what_is_no_camera_is_refused() {
             };
             let error = sun
                 .shadow
-                .record(&gpu.device, &mut gpu.encoder(), &frame)
+                .record_frame(&mut gpu.encoder(), &frame)
                 .expect_err("no camera");
             assert!(
                 matches!(error, ShadowError::CameraMatrix { field, .. } if field == wanted),

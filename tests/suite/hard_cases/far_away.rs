@@ -2,13 +2,14 @@
 
 use glam::{DMat3, DVec3};
 use wgpu_shadows::{
-    Aabb, Coverage, DepthFormat, DirectionalLight, DirectionalShadowDescriptor, ShadowViewUniform,
+    Aabb, DepthFormat, DirectionalLight, DirectionalShadowDescriptor, ShadowViewUniform,
 };
 
 use super::stage::{
     MARGIN, Sun, Verdict, any_camera, bounds_of, boxes, level, meshes, scene, shining, world,
 };
 use super::table;
+use crate::support::frames::Coverage;
 use crate::support::probe::Point;
 use crate::support::random::Random;
 use crate::support::rounding::U;

@@ -2,13 +2,14 @@
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
-    Aabb, OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowViewUniform, SpotFrame,
-    SpotLight, SpotShadow, SpotShadowDescriptor,
+    Aabb, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowViewUniform, SpotLight, SpotShadow,
+    SpotShadowDescriptor,
 };
 
 use super::stage::{SUM_ERROR, differ, scene};
 use super::table;
 use crate::support::ask::{Ask, record_omni, record_spot};
+use crate::support::frames::{OmniFrame, SpotFrame};
 use crate::support::gpu::gpu;
 use crate::support::local_truth::{Settled, settled};
 use crate::support::probe::Point;

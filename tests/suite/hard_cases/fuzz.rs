@@ -7,10 +7,10 @@ use std::cell::RefCell;
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, CascadeSplit, Coverage, DepthFormat, DirectionalFrame, DirectionalLight,
-    DirectionalShadow, DirectionalShadowDescriptor, OmniFrame, OmniLight, OmniShadow,
-    OmniShadowDescriptor, OmniShadowPool, PoolDescriptor, PoolFrame, PoolLight, ShadowCaster,
-    ShadowSlot, SpotFrame, SpotLight, SpotShadow, SpotShadowDescriptor, SpotShadowPool, Stability,
+    Aabb, CascadeSplit, DepthFormat, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, OmniLight, OmniShadow, OmniShadowDescriptor, OmniShadowPool,
+    PoolDescriptor, PoolLight, ShadowCaster, ShadowSlot, SpotLight, SpotShadow,
+    SpotShadowDescriptor, SpotShadowPool, Stability,
 };
 
 use proptest::{prop_assert, prop_assert_eq};
@@ -20,6 +20,9 @@ use super::fuzz_values::{
 };
 use super::stage::caster;
 use crate::support::ask::{Ask, submitted};
+use crate::support::frames::{
+    Coverage, DirectionalFrame, OmniFrame, PoolFrame, RecordFrame, SpotFrame,
+};
 use crate::support::gpu::gpu;
 use crate::support::probe::Point;
 use crate::support::report::assert_whole;
@@ -176,7 +179,6 @@ impl Lights {
         casters: &[&dyn ShadowCaster],
     ) -> Result<(), String> {
         let gpu = gpu();
-        let device = &gpu.device;
         let origin = numbers.origin.as_dvec3();
         let receivers = [numbers.receiver];
         let camera = numbers.camera;
@@ -205,7 +207,7 @@ impl Lights {
                     receivers: &receivers,
                 };
                 let sun = &mut self.suns[usize::from(kind == 5)];
-                submitted(gpu, |encoder| sun.record(device, encoder, &frame))
+                submitted(gpu, |encoder| sun.record_frame(encoder, &frame))
             }
             1 => {
                 let frame = SpotFrame {
@@ -215,7 +217,7 @@ impl Lights {
                     casters,
                     receivers: &receivers,
                 };
-                submitted(gpu, |encoder| self.spot.record(device, encoder, &frame))
+                submitted(gpu, |encoder| self.spot.record_frame(encoder, &frame))
             }
             2 => {
                 let frame = OmniFrame {
@@ -225,7 +227,7 @@ impl Lights {
                     casters,
                     receivers: &receivers,
                 };
-                submitted(gpu, |encoder| self.lamp.record(device, encoder, &frame))
+                submitted(gpu, |encoder| self.lamp.record_frame(encoder, &frame))
             }
             3 => {
                 let lights = [PoolLight {
@@ -234,7 +236,7 @@ impl Lights {
                     importance: numbers.importance,
                 }];
                 let frame = pool_frame(numbers, origin, &lights, casters, &receivers);
-                submitted(gpu, |encoder| self.spots.record(device, encoder, &frame))
+                submitted(gpu, |encoder| self.spots.record_frame(encoder, &frame))
             }
             _ => {
                 let lights = [PoolLight {
@@ -243,7 +245,7 @@ impl Lights {
                     importance: numbers.importance,
                 }];
                 let frame = pool_frame(numbers, origin, &lights, casters, &receivers);
-                submitted(gpu, |encoder| self.lamps.record(device, encoder, &frame))
+                submitted(gpu, |encoder| self.lamps.record_frame(encoder, &frame))
             }
         };
         result

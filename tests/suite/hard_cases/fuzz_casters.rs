@@ -5,13 +5,13 @@ use std::cell::RefCell;
 use glam::{DVec3, Mat4, Vec3};
 use proptest::prelude::*;
 use wgpu_shadows::{
-    Aabb, CasterPipeline, CasterPipelineDescriptor, CasterVertex, Coverage, DepthFormat,
-    DirectionalFrame, MeshCaster, MeshCasterDescriptor, MeshIndices, ModelTransform,
-    PositionAttribute,
+    Aabb, CasterPipeline, CasterPipelineDescriptor, CasterVertex, DepthFormat, MeshCaster,
+    MeshCasterDescriptor, MeshIndices, ModelTransform, PositionAttribute,
 };
 
 use super::fuzz_values::{Counts, bounds, matrix, run};
 use super::stage::{Sun, shining};
+use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};
 use crate::support::gpu::gpu;
 use crate::support::probe::Point;
 
@@ -287,7 +287,7 @@ fn any_buffers_of_a_mesh_are_taken_or_refused() {
             casters: &[&mesh],
             receivers: &[],
         };
-        let _ = sun.shadow.record(&gpu.device, &mut encoder, &frame);
+        let _ = sun.shadow.record_frame(&mut encoder, &frame);
         gpu.submit(encoder);
         let seen = sun.ask(&[Point::new(Vec3::ZERO, Vec3::Y)])[0];
         prop_assert!((0.0..=1.0).contains(&seen), "{}", seen);

@@ -4,9 +4,10 @@ use std::cell::RefCell;
 
 use glam::DVec3;
 use proptest::prelude::*;
-use wgpu_shadows::{OmniLight, OmniShadowPool, PoolDescriptor, PoolFrame, PoolLight, ShadowSlot};
+use wgpu_shadows::{OmniLight, OmniShadowPool, PoolDescriptor, PoolLight, ShadowSlot};
 
 use super::fuzz_values::{Counts, number, run};
+use crate::support::frames::{PoolFrame, RecordFrame};
 use crate::support::gpu::gpu;
 
 /// What may be done with a pool.
@@ -88,7 +89,7 @@ fn any_coming_and_going_in_a_pool() {
                         max_views: Some(1),
                     };
                     let mut encoder = gpu.encoder();
-                    let result = pool.record(&gpu.device, &mut encoder, &frame).map(|_| ());
+                    let result = pool.record_frame(&mut encoder, &frame).map(|_| ());
                     counts.count(&result);
                     gpu.submit(encoder);
                     let once = (1..slots.len()).all(|k| !slots[..k].contains(&slots[k]));

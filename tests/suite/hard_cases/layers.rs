@@ -1,10 +1,11 @@
 //! Casters above casters: the light that one of them stops stays stopped.
 
 use glam::{DVec3, Vec3};
-use wgpu_shadows::{Aabb, Bias, Coverage, DirectionalShadowDescriptor, Filter};
+use wgpu_shadows::{Aabb, Bias, DirectionalShadowDescriptor, Filter};
 
 use super::stage::{SUM_ERROR, Sun, scene, shining};
 use super::table;
+use crate::support::frames::Coverage;
 use crate::support::gpu::gpu;
 use crate::support::probe::Point;
 use crate::support::random::Random;

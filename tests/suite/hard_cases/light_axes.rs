@@ -1,10 +1,10 @@
 //! Light along an axis of the world, and a hair off it: no direction is special.
 
 use glam::{DMat3, DVec3};
-use wgpu_shadows::Coverage;
 
 use super::stage::{Sun, bounds_of, boxes, differ, meshes, scene, shining};
 use super::table;
+use crate::support::frames::Coverage;
 use crate::support::gpu::gpu;
 use crate::support::probe::Point;
 use crate::support::random::Random;

@@ -5,15 +5,18 @@
 use glam::{DVec3, Mat4, Vec3};
 use wgpu::util::DeviceExt;
 use wgpu_shadows::{
-    Aabb, CasterPipeline, CasterPipelineDescriptor, Coverage, DirectionalFrame, DirectionalLight,
-    DirectionalShadow, DirectionalShadowDescriptor, MeshCaster, MeshCasterDescriptor, MeshIndices,
-    OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor, PoolDescriptor, PoolFrame, PoolLight,
-    ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowSlot, SpotFrame, SpotLight,
-    SpotShadow, SpotShadowDescriptor, SpotShadowPool,
+    Aabb, CasterPipeline, CasterPipelineDescriptor, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, MeshCaster, MeshCasterDescriptor, MeshIndices, OmniLight,
+    OmniShadow, OmniShadowDescriptor, PoolDescriptor, PoolLight, ShadowBindings,
+    ShadowBindingsDescriptor, ShadowCaster, ShadowSlot, SpotLight, SpotShadow,
+    SpotShadowDescriptor, SpotShadowPool,
 };
 
 use super::table;
 use crate::support::camera::Camera;
+use crate::support::frames::{
+    Coverage, DirectionalFrame, OmniFrame, PoolFrame, RecordFrame, SpotFrame,
+};
 use crate::support::gpu::gpu;
 use crate::support::scene::Mesh;
 
@@ -209,10 +212,10 @@ impl Lights {
         };
         let mut passes = 0;
         let reports = [
-            self.sun.record(device, &mut encoder, &sun),
-            self.spot.record(device, &mut encoder, &spot),
-            self.lamp.record(device, &mut encoder, &lamp),
-            self.pool.record(device, &mut encoder, &pool),
+            self.sun.record_frame(&mut encoder, &sun),
+            self.spot.record_frame(&mut encoder, &spot),
+            self.lamp.record_frame(&mut encoder, &lamp),
+            self.pool.record_frame(&mut encoder, &pool),
         ];
         for report in reports {
             passes += report.expect("a frame").passes;

@@ -2,11 +2,12 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, CasterPipeline, CasterPipelineDescriptor, Coverage, DirectionalLight, ShadowCaster,
+    Aabb, CasterPipeline, CasterPipelineDescriptor, DirectionalLight, ShadowCaster,
 };
 
 use super::stage::Sun;
 use super::table;
+use crate::support::frames::Coverage;
 use crate::support::gpu::gpu;
 use crate::support::readback;
 use crate::support::rounding::U;

@@ -2,13 +2,14 @@
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
-    Aabb, Bias, Filter, OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor, SpotFrame,
-    SpotLight, SpotShadow, SpotShadowDescriptor,
+    Aabb, Bias, Filter, OmniLight, OmniShadow, OmniShadowDescriptor, SpotLight, SpotShadow,
+    SpotShadowDescriptor,
 };
 
 use super::stage::scene;
 use super::table;
 use crate::support::ask::{Ask, record_omni, record_spot};
+use crate::support::frames::{OmniFrame, SpotFrame};
 use crate::support::gpu::gpu;
 use crate::support::probe::Point;
 use crate::support::random::Random;

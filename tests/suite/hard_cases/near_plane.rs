@@ -2,14 +2,15 @@
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
-    Aabb, Bias, Coverage, Filter, OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor,
-    SpotFrame, SpotLight, SpotShadow, SpotShadowDescriptor,
+    Aabb, Bias, Filter, OmniLight, OmniShadow, OmniShadowDescriptor, SpotLight, SpotShadow,
+    SpotShadowDescriptor,
 };
 
 use super::stage::{SUM_ERROR, Sun, differ, scene, shining};
 use super::table;
 use crate::support::ask::{Ask, record_omni, record_spot};
 use crate::support::camera::{Camera, Lens, Pose};
+use crate::support::frames::{Coverage, OmniFrame, SpotFrame};
 use crate::support::gpu::gpu;
 use crate::support::local_truth::settled;
 use crate::support::probe::Point;

@@ -1,7 +1,8 @@
 //! The same scene in other units: no length in the library is absolute.
 
 use glam::{DMat3, DVec3};
-use wgpu_shadows::Coverage;
+
+use crate::support::frames::Coverage;
 
 use super::stage::{
     MARGIN, Sun, Verdict, any_camera, bounds_of, boxes, level, meshes, scene, shining, world,

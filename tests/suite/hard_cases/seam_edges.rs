@@ -1,11 +1,12 @@
 //! Edges of shadows on the seams and corners of a point light's cube: as true as in the middle of its faces.
 
 use glam::{DVec3, Vec3};
-use wgpu_shadows::{Aabb, Filter, OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor};
+use wgpu_shadows::{Aabb, Filter, OmniLight, OmniShadow, OmniShadowDescriptor};
 
 use super::stage::scene;
 use super::table;
 use crate::support::ask::{Ask, record_omni};
+use crate::support::frames::OmniFrame;
 use crate::support::gpu::gpu;
 use crate::support::probe::Point;
 use crate::support::random::Random;

@@ -2,11 +2,12 @@
 
 use glam::{DMat3, DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, CascadeSplit, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, ShadowCaster, ShadowReport,
+    Aabb, CascadeSplit, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    ShadowCaster, ShadowReport,
 };
 
 use crate::support::camera::Camera;
+use crate::support::frames::{Coverage, DirectionalFrame};
 use crate::support::gpu::{Gpu, gpu};
 use crate::support::probe::{Point, SunProbe, record};
 use crate::support::random::Random;

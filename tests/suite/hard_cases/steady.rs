@@ -3,11 +3,12 @@
 use std::f64::consts::TAU;
 
 use glam::{DMat3, DVec3};
-use wgpu_shadows::{CascadeSplit, Coverage, DirectionalShadowDescriptor, ShadowView};
+use wgpu_shadows::{CascadeSplit, DirectionalShadowDescriptor, ShadowView};
 
 use super::stage::{Sun, boxes, differ, level, meshes, scene, shining, world};
 use super::table;
 use crate::support::camera::Camera;
+use crate::support::frames::Coverage;
 use crate::support::random::Random;
 use crate::support::rounding::U;
 use crate::support::scene::Mesh;

@@ -1,10 +1,11 @@
 //! Casters about as wide as a texel: a map catches them by chance, but by fair chance, and always the same.
 
 use glam::{DMat2, DVec2, DVec3, Vec2, Vec3};
-use wgpu_shadows::{Aabb, Coverage, DirectionalShadowDescriptor, Filter};
+use wgpu_shadows::{Aabb, DirectionalShadowDescriptor, Filter};
 
 use super::stage::{Sun, scene, shining};
 use super::table;
+use crate::support::frames::Coverage;
 use crate::support::gpu::gpu;
 use crate::support::probe::Point;
 use crate::support::random::Random;

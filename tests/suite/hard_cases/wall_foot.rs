@@ -4,12 +4,13 @@ use std::f64::consts::SQRT_2;
 
 use glam::{DVec2, DVec3, Vec3};
 use wgpu_shadows::{
-    Aabb, Bias, CasterPipeline, CasterPipelineDescriptor, Coverage, DirectionalShadowDescriptor,
-    Filter, ShadowCaster,
+    Aabb, Bias, CasterPipeline, CasterPipelineDescriptor, DirectionalShadowDescriptor, Filter,
+    ShadowCaster,
 };
 
 use super::stage::{Sun, shining};
 use super::table;
+use crate::support::frames::Coverage;
 use crate::support::gpu::gpu;
 use crate::support::probe::Point;
 use crate::support::random::Random;

@@ -1,0 +1,471 @@
+//! One frame for all lights: several cameras that share the maps, and who casts and who receives.
+
+use glam::{DMat4, DVec3, Mat4, Vec3};
+use wgpu_shadows::{
+    Aabb, CameraView, CasterPipeline, Coverage, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor, Revision,
+    ShadowCaster, ShadowError, ShadowFrameDescriptor, ShadowReport, ShadowScene, ShadowView,
+    SpotLight, SpotShadow, SpotShadowDescriptor, Stability, ViewStatus,
+};
+
+use crate::support::ask::Ask;
+use crate::support::camera::Camera;
+use crate::support::gpu::{Gpu, gpu};
+use crate::support::local_truth::Settled;
+use crate::support::probe::Point;
+use crate::support::random::Random;
+use crate::support::scene::{Mesh, Triangle, default_pipeline, occluded};
+
+const SUN: DVec3 = DVec3::new(0.35, -1.0, 0.2);
+const MAP_SIZE: u32 = 1024;
+
+/// A mesh with the flags of the test's choice.
+struct Flagged {
+    mesh: MeshCaster,
+    casts: bool,
+    receives: bool,
+}
+
+impl ShadowCaster for Flagged {
+    fn bounds(&self) -> Aabb {
+        self.mesh.bounds()
+    }
+
+    fn pipeline(&self) -> &CasterPipeline {
+        self.mesh.pipeline()
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &ShadowView) {
+        self.mesh.draw(pass, view);
+    }
+
+    fn casts(&self) -> bool {
+        self.casts
+    }
+
+    fn receives(&self) -> bool {
+        self.receives
+    }
+
+    fn revision(&self) -> Revision {
+        self.mesh.revision()
+    }
+}
+
+/// Two yards a hundred units apart, each with boxes on a floor and a camera of its own.
+struct Yards {
+    casters: Vec<MeshCaster>,
+    triangles: Vec<Triangle>,
+    floors: [Aabb; 2],
+    middles: [DVec3; 2],
+}
+
+impl Yards {
+    fn new(gpu: &Gpu) -> Self {
+        let middles = [DVec3::ZERO, DVec3::new(100.0, 0.0, 40.0)];
+        let mut random = Random::new(5);
+        let meshes: Vec<_> = middles
+            .iter()
+            .flat_map(|middle| {
+                let mut one = || {
+                    let low = random.point(DVec3::new(-3.0, 0.0, -3.0), DVec3::new(2.0, 0.5, 2.0));
+                    let size = random.point(DVec3::splat(0.4), DVec3::new(1.0, 1.5, 1.0));
+                    let low = (*middle + low).as_vec3();
+                    Mesh::cuboid(low, low + size.as_vec3())
+                };
+                [one(), one(), one(), one()]
+            })
+            .collect();
+        let pipeline = default_pipeline(gpu);
+        let casters = meshes
+            .iter()
+            .map(|mesh| mesh.caster(gpu, &pipeline, Mat4::IDENTITY));
+        let floor = |middle: DVec3| {
+            let half = Vec3::new(5.0, 0.0, 5.0);
+            Aabb::new(middle.as_vec3() - half, middle.as_vec3() + half)
+        };
+        Self {
+            casters: casters.collect(),
+            triangles: meshes
+                .iter()
+                .flat_map(|mesh| mesh.triangles(&Mat4::IDENTITY))
+                .collect(),
+            floors: middles.map(floor),
+            middles,
+        }
+    }
+
+    fn list(&self) -> Vec<&dyn ShadowCaster> {
+        self.casters.iter().map(|caster| caster as _).collect()
+    }
+
+    /// The camera of one yard.
+    fn camera(&self, yard: usize) -> Camera {
+        let middle = self.middles[yard];
+        Camera::modern(middle + DVec3::new(1.0, 7.0, 9.0), middle, 0.9, 1.5)
+    }
+
+    /// Places of a yard's floor that its camera sees, whose truth toward the light is the same for `around` world units.
+    fn settled(&self, yard: usize, toward_light: impl Fn(DVec3) -> DVec3, around: f64) -> Settled {
+        let mut random = Random::new(9 + yard as u64);
+        let mut settled = Settled::default();
+        let clip_from_render = self.camera(yard).view();
+        let clip_from_render = clip_from_render.clip_from_view * clip_from_render.view_from_render;
+        for _ in 0..3000 {
+            let place = random.point(DVec3::new(-4.5, 0.0, -4.5), DVec3::new(4.5, 0.0, 4.5));
+            let place = (self.middles[yard] + place).as_vec3().as_dvec3();
+            let clip = clip_from_render * place.as_vec3().extend(1.0);
+            if clip.x.abs() > clip.w || clip.y.abs() > clip.w {
+                continue;
+            }
+            let is_dark = |place: DVec3| occluded(&self.triangles, place, toward_light(place), 0.0);
+            let dark = is_dark(place);
+            let ring = (0..16).map(|step| {
+                let angle = f64::from(step) / 16.0 * std::f64::consts::TAU;
+                place + DVec3::new(angle.cos(), 0.0, angle.sin()) * around
+            });
+            if ring.into_iter().all(|near| is_dark(near) == dark) {
+                settled.points.push(Point::rounded(place, DVec3::Y));
+                settled.dark.push(dark);
+            } else {
+                settled.at_edges += 1;
+            }
+        }
+        let [dark, lit] = settled.counts();
+        assert!(dark > 30 && lit > 300, "{dark} dark, {lit} lit");
+        settled
+    }
+}
+
+fn sun(gpu: &Gpu, stability: Stability, cascades: u32) -> DirectionalShadow {
+    let descriptor = DirectionalShadowDescriptor {
+        map_size: MAP_SIZE,
+        cascades,
+        stability,
+        ..Default::default()
+    };
+    DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun")
+}
+
+/// What `shadow` says of a yard's settled places is the truth.
+fn assert_yard(gpu: &Gpu, yards: &Yards, ask: &Ask, yard: usize, texel: f64, what: &str) {
+    // A kernel reaches 2.83 texels to its corner; the floor lies aslant by at most the light's own slope.
+    let settled = yards.settled(yard, |_| -SUN.normalize(), 4.5 * texel);
+    let seen = ask.points(gpu, &settled.points);
+    settled.assert_agrees(&seen, &format!("{what}, yard {yard}"));
+}
+
+/// Two cameras that see different parts of the world share one light's maps, and while nothing moves the maps are kept. The
+/// window over both yards is some 110 units wide.
+#[test]
+fn two_cameras_share_the_maps_of_a_sun() {
+    let gpu = gpu();
+    let yards = Yards::new(gpu);
+    let list = yards.list();
+    let view = |yard: usize| yards.camera(yard).view().with_max_distance(25.0);
+    let cameras = [view(0), view(1)];
+    for (stability, cascades) in [
+        (Stability::Rungs, 1),
+        (Stability::Rungs, 3),
+        (Stability::Rotation, 2),
+    ] {
+        let mut shadow = sun(gpu, stability, cascades);
+        let ask = Ask::light(gpu, shadow.source());
+        let mut scene = ShadowScene::new();
+        for step in 0..3 {
+            let frame = scene
+                .frame(&ShadowFrameDescriptor {
+                    origin: DVec3::ZERO,
+                    coverage: Coverage::Cameras(&cameras),
+                    casters: &list,
+                    receivers: &yards.floors,
+                })
+                .expect("a valid frame");
+            let mut encoder = gpu.encoder();
+            let light = DirectionalLight::new(SUN.as_vec3());
+            let report = shadow.record(&mut encoder, &frame, &light);
+            let report = report.expect("a valid frame").clone();
+            gpu.submit(encoder);
+            let drawn = |status| report.views.iter().any(|view| view.status == status);
+            assert_eq!(drawn(ViewStatus::Drawn), step == 0, "{step}: {report:?}");
+            assert!(drawn(ViewStatus::Kept) || step == 0);
+        }
+        let texel = shadow
+            .views()
+            .map(|view| view.texel_size_world().max_element());
+        let texel = f64::from(texel.fold(0.0, f32::max));
+        let what = format!("{stability:?}, {cascades} cascades");
+        for yard in 0..2 {
+            assert_yard(gpu, &yards, &ask, yard, texel, &what);
+        }
+    }
+}
+
+/// A camera more costs no texels of a light whose fit it does not widen, and a mirrored one counts like any other.
+#[test]
+fn a_mirror_sees_what_its_camera_sees() {
+    let gpu = gpu();
+    let yards = Yards::new(gpu);
+    let list = yards.list();
+    let camera = yards.camera(0).view().with_max_distance(25.0);
+    // Upside down: the handedness of the picture is the other one, and what is seen is the same.
+    let flip = DMat4::from_scale(DVec3::new(1.0, -1.0, 1.0)).as_mat4();
+    let mirrored = CameraView {
+        clip_from_view: flip * camera.clip_from_view,
+        ..camera
+    };
+    let mut scene = ShadowScene::new();
+    let mut placed = |cameras: &[CameraView]| {
+        let frame = scene
+            .frame(&ShadowFrameDescriptor {
+                origin: DVec3::ZERO,
+                coverage: Coverage::Cameras(cameras),
+                casters: &list,
+                receivers: &yards.floors,
+            })
+            .expect("a valid frame");
+        let mut shadow = sun(gpu, Stability::Rungs, 2);
+        let mut encoder = gpu.encoder();
+        shadow
+            .record(&mut encoder, &frame, &DirectionalLight::new(SUN.as_vec3()))
+            .expect("a valid frame");
+        shadow
+            .views()
+            .map(ShadowView::clip_from_render)
+            .collect::<Vec<_>>()
+    };
+    let one = placed(&[camera]);
+    assert_eq!(one.len(), 2);
+    assert_eq!(placed(&[camera, camera]), one);
+    assert_eq!(placed(&[mirrored, camera]), one);
+    assert_eq!(placed(&[mirrored]), one);
+    assert_eq!(placed(&[]), []);
+}
+
+/// Local lights draw the faces and the part of a cone that any of the cameras sees.
+#[test]
+fn two_cameras_share_the_maps_of_local_lights() {
+    let gpu = gpu();
+    let yards = Yards::new(gpu);
+    let list = yards.list();
+    let place = DVec3::new(50.0, 30.0, 20.0);
+    let lamp = OmniLight {
+        position_world: place,
+        range: 200.0,
+    };
+    let spot = SpotLight {
+        position_world: place,
+        direction: Vec3::NEG_Y,
+        outer_angle_radians: 1.3,
+        range: 200.0,
+    };
+    let cameras = [0, 1].map(|yard| yards.camera(yard).view());
+    let mut both = OmniShadow::new(
+        &gpu.device,
+        &OmniShadowDescriptor {
+            map_size: 2048,
+            ..Default::default()
+        },
+    )
+    .expect("a valid lamp");
+    let mut cone = SpotShadow::new(
+        &gpu.device,
+        &SpotShadowDescriptor {
+            map_size: 4096,
+            ..Default::default()
+        },
+    )
+    .expect("a valid spot");
+    let asks = [
+        Ask::light(gpu, both.source()),
+        Ask::light(gpu, cone.source()),
+    ];
+    let mut scene = ShadowScene::new();
+    let frame = scene
+        .frame(&ShadowFrameDescriptor {
+            origin: DVec3::ZERO,
+            coverage: Coverage::Cameras(&cameras),
+            casters: &list,
+            receivers: &yards.floors,
+        })
+        .expect("a valid frame");
+    let mut encoder = gpu.encoder();
+    let report = both.record(&mut encoder, &frame, &lamp).cloned();
+    let empty = |report: &ShadowReport| {
+        let views = report.views.iter();
+        views
+            .filter(|view| view.status == ViewStatus::Empty)
+            .count()
+    };
+    assert!(
+        empty(&report.expect("a valid frame")) >= 2,
+        "faces that nobody sees"
+    );
+    cone.record(&mut encoder, &frame, &spot)
+        .expect("a valid frame");
+    gpu.submit(encoder);
+    let texels = [
+        both.views()
+            .map(|view| view.texel_size_world().max_element()),
+        cone.views()
+            .map(|view| view.texel_size_world().max_element()),
+    ]
+    .map(|texels| f64::from(texels.fold(0.0, f32::max)));
+    for yard in 0..2 {
+        for (ask, texel) in asks.iter().zip(texels) {
+            // A kernel of 2.83 texels to its corner, stretched by the low angle at which the light meets the floor.
+            let settled = yards.settled(yard, |at| place - at, 2.83 * texel / 0.3);
+            let seen = ask.points(gpu, &settled.points);
+            settled.assert_agrees(&seen, &format!("yard {yard}"));
+        }
+    }
+}
+
+/// A dome that does not receive costs no texels; a sheet that does not cast is not drawn and still counts as a receiver.
+#[test]
+fn who_casts_and_who_receives() {
+    let gpu = gpu();
+    let pipeline = default_pipeline(gpu);
+    let slab = Mesh::cuboid(Vec3::new(-0.5, 1.0, -0.5), Vec3::new(0.5, 1.1, 0.5));
+    let slab = slab.caster(gpu, &pipeline, Mat4::IDENTITY);
+    let floor = Mesh::floor(0.0, 2.0).caster(gpu, &pipeline, Mat4::IDENTITY);
+    let dome = Mesh::sphere(Vec3::ZERO, 400.0, 8).caster(gpu, &pipeline, Mat4::IDENTITY);
+    let flagged = |mesh, casts, receives| Flagged {
+        mesh,
+        casts,
+        receives,
+    };
+    let mut floor = flagged(floor, false, true);
+    let mut dome = flagged(dome, false, false);
+    let camera = Camera::modern(DVec3::new(0.5, 4.0, 5.0), DVec3::ZERO, 0.8, 1.0).view();
+    let mut scene = ShadowScene::new();
+    let mut report = |casters: &[&dyn ShadowCaster]| {
+        let frame = scene
+            .frame(&ShadowFrameDescriptor {
+                origin: DVec3::ZERO,
+                coverage: Coverage::Cameras(&[camera]),
+                casters,
+                receivers: &[],
+            })
+            .expect("a valid frame");
+        let mut shadow = sun(gpu, Stability::Rungs, 1);
+        let mut encoder = gpu.encoder();
+        let light = DirectionalLight::new(SUN.as_vec3());
+        let report = shadow.record(&mut encoder, &frame, &light);
+        let view = report.expect("a valid frame").views[0];
+        gpu.submit(encoder);
+        view
+    };
+    let alone = report(&[&slab, &floor]);
+    assert_eq!((alone.status, alone.casters), (ViewStatus::Drawn, 1));
+    assert_eq!(report(&[&slab, &floor, &dome]), {
+        let mut with_one_culled = alone;
+        with_one_culled.culled += 1;
+        with_one_culled
+    });
+    // With its flags as they are by default the dome would take the whole map.
+    (dome.casts, dome.receives) = (true, true);
+    let coarse = report(&[&slab, &floor, &dome]);
+    assert!(coarse.texel_size_world.x > 4.0 * alone.texel_size_world.x);
+    // Where nothing receives but the slab itself, its shadow is for nobody.
+    floor.receives = false;
+    let own = report(&[&slab, &floor]);
+    assert!(
+        own.texel_size_world.x < 0.7 * alone.texel_size_world.x,
+        "{own:?}"
+    );
+}
+
+/// The coverage of a frame means the same to all lights: without an end everything counts, in a box what lies in it.
+#[test]
+fn coverage_is_one_for_all_lights() {
+    let gpu = gpu();
+    let yards = Yards::new(gpu);
+    let list = yards.list();
+    let mut scene = ShadowScene::new();
+    let around = |middle: DVec3| {
+        let middle = middle.as_vec3();
+        Aabb::new(
+            middle - Vec3::new(5.0, 0.5, 5.0),
+            middle + Vec3::new(5.0, 3.0, 5.0),
+        )
+    };
+    let mut texels = Vec::new();
+    for coverage in [
+        Coverage::Everything,
+        Coverage::Bounds(around(yards.middles[0])),
+        Coverage::Bounds(Aabb::EMPTY),
+    ] {
+        let frame = scene
+            .frame(&ShadowFrameDescriptor {
+                origin: DVec3::ZERO,
+                coverage,
+                casters: &list,
+                receivers: &yards.floors,
+            })
+            .expect("a valid frame");
+        let mut shadow = sun(gpu, Stability::Rungs, 1);
+        let mut cone =
+            SpotShadow::new(&gpu.device, &SpotShadowDescriptor::default()).expect("a valid spot");
+        let spot = SpotLight {
+            position_world: DVec3::new(50.0, 30.0, 20.0),
+            direction: Vec3::NEG_Y,
+            outer_angle_radians: 1.3,
+            range: f32::INFINITY,
+        };
+        let ask = Ask::light(gpu, shadow.source());
+        let mut encoder = gpu.encoder();
+        let light = DirectionalLight::new(SUN.as_vec3());
+        let of =
+            |report: &ShadowReport| (report.views[0].status, report.views[0].texel_size_world.x);
+        let sun_view = of(shadow
+            .record(&mut encoder, &frame, &light)
+            .expect("a frame"));
+        let spot_view = of(cone.record(&mut encoder, &frame, &spot).expect("a frame"));
+        gpu.submit(encoder);
+        if coverage == Coverage::Everything {
+            let texel = f64::from(sun_view.1);
+            for yard in 0..2 {
+                assert_yard(gpu, &yards, &ask, yard, texel, "everything");
+            }
+        }
+        texels.push((sun_view, spot_view));
+    }
+    let [everything, boxed, nothing] = texels[..] else {
+        unreachable!("three coverages")
+    };
+    assert_eq!(everything.0.0, ViewStatus::Drawn);
+    assert!(boxed.0.1 < 0.3 * everything.0.1 && boxed.1.1 < everything.1.1);
+    assert_eq!(
+        (nothing.0.0, nothing.1.0),
+        (ViewStatus::Empty, ViewStatus::Empty)
+    );
+}
+
+/// Errors of a frame name the camera of several that is not sound.
+#[test]
+fn errors_name_the_camera() {
+    let good = CameraView::new(Mat4::IDENTITY, Mat4::IDENTITY);
+    let bad = CameraView::new(Mat4::IDENTITY, Mat4::ZERO);
+    let mut scene = ShadowScene::new();
+    let error = scene
+        .frame(&ShadowFrameDescriptor {
+            origin: DVec3::ZERO,
+            coverage: Coverage::Cameras(&[good, good, bad]),
+            casters: &[],
+            receivers: &[],
+        })
+        .err()
+        .expect("a camera without volume");
+    let wanted = ShadowError::CameraMatrix {
+        field: "CameraView::clip_from_view",
+        camera: 2,
+        value: Mat4::ZERO.to_string(),
+    };
+    assert_eq!(error, wanted);
+    assert!(
+        error
+            .to_string()
+            .starts_with("CameraView::clip_from_view of camera 2 must be")
+    );
+}
