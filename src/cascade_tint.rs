@@ -9,9 +9,6 @@ use crate::fullscreen;
 use crate::receive::{Receiver, ShadowViewUniform};
 use crate::shader;
 
-/// Most views of one light that a tint tells apart.
-const VIEWS: usize = 8;
-
 /// Mirror of `ShadowTint` in `wgsl/pass/cascade_tint.wgsl`, rounded up to 16 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -30,6 +27,9 @@ pub(crate) struct CascadeTint {
 }
 
 impl CascadeTint {
+    /// Most views of one light that a tint tells apart.
+    pub const VIEWS: usize = 8;
+
     /// For targets of `format`. Device errors are for the caller's scope.
     pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
         let layout = create_layout(device);
@@ -52,8 +52,8 @@ impl CascadeTint {
         depth: &wgpu::TextureView,
         render_from_clip: Mat4,
     ) -> Result<(), DeviceRefusal> {
-        let mut views = [ShadowViewUniform::zeroed(); VIEWS];
-        let count = receiver.uniforms.len().min(VIEWS);
+        let mut views = [ShadowViewUniform::zeroed(); Self::VIEWS];
+        let count = receiver.uniforms.len().min(Self::VIEWS);
         views[..count].copy_from_slice(&receiver.uniforms[..count]);
         let header = TintUniform {
             render_from_clip: render_from_clip.to_cols_array_2d(),
@@ -118,7 +118,10 @@ fn create_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
         label: Some("shadow cascade tint"),
         entries: &[
             entry(0, uniform(size_of::<TintUniform>())),
-            entry(1, uniform(VIEWS * size_of::<ShadowViewUniform>())),
+            entry(
+                1,
+                uniform(CascadeTint::VIEWS * size_of::<ShadowViewUniform>()),
+            ),
             entry(2, depth),
             entry(
                 3,

@@ -7,6 +7,7 @@ use crate::cascade_tint::CascadeTint;
 use crate::cast::{capture_device_errors, filled_buffer};
 use crate::error::{DebugViewError, DeviceRefusal};
 use crate::fullscreen;
+use crate::limits;
 use crate::receive::{Selection, ShadowSource, ShadowViewUniform};
 use crate::shader;
 
@@ -51,8 +52,8 @@ impl DebugView {
     /// For passes with one colour target of `format`, no depth attachment and one sample.
     ///
     /// # Errors
-    /// [`DebugViewError::Format`] for a format that floats cannot be drawn to, [`DebugViewError::Device`] for a device that is
-    /// lost or out of memory.
+    /// [`DebugViewError::Format`] for a format that floats cannot be drawn to, [`DebugViewError::OverDeviceLimit`] for a device
+    /// that was created with too low limits, [`DebugViewError::Device`] for one that is lost or out of memory.
     pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Result<Self, DebugViewError> {
         let floats = matches!(
             format.sample_type(None, Some(device.features())),
@@ -68,6 +69,12 @@ impl DebugView {
         if !(floats && renderable) {
             return Err(DebugViewError::Format { format });
         }
+        let views = if blendable {
+            CascadeTint::VIEWS.max(FACES as usize)
+        } else {
+            FACES as usize
+        };
+        limits::check_debug_view(device, format, views as u64)?;
         let create = || {
             let layout = create_layout(device);
             let source = shader::compose(&[shader::DEBUG_VIEW.name]).unwrap_or_default();

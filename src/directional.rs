@@ -9,6 +9,7 @@ use crate::fit::{
     Spacing,
 };
 use crate::light_maps::{LayerBase, LightMaps, LightMapsDescriptor, MapsFrame, light_maps_getters};
+use crate::limits;
 use crate::receive::{Sampling, Selection};
 use crate::report::ShadowReport;
 use crate::{
@@ -23,7 +24,7 @@ pub struct DirectionalShadowDescriptor<'a> {
     /// Texels per side of each cascade's map, 1 up to the device's `max_texture_dimension_2d`. Default 2048. Cost and memory
     /// grow with its square, the blur and misplacement of an edge shrink with it.
     pub map_size: u32,
-    /// Cascades, 1..=8. Default 1, which suits a scene as deep as it is wide; a view to the horizon wants 3 or 4.
+    /// Cascades, 1..=8, and no more than the device's `max_texture_array_layers`. Default 1, which suits a scene as deep as it is wide; a view to the horizon wants 3 or 4.
     pub cascades: u32,
     /// Where one cascade ends and the next begins. Default logarithmic.
     pub split: CascadeSplit,
@@ -153,6 +154,11 @@ impl DirectionalShadow {
             descriptor.filter.light_size(),
         )?;
         check::bias("DirectionalShadowDescriptor::bias", descriptor.bias)?;
+        limits::check_layers(
+            device,
+            "DirectionalShadowDescriptor::cascades",
+            descriptor.cascades.into(),
+        )?;
         let sampling = Sampling {
             filter: descriptor.filter,
             bias: descriptor.bias,

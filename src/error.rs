@@ -50,17 +50,18 @@ pub enum ShadowError {
         /// The value, formatted.
         value: String,
     },
-    /// A size exceeds what the device was created with.
-    #[error("{field} must be at most the device's {limit} = {maximum}, got {value}")]
+    /// A light needs more of something than the device was created with.
+    #[error("{field} asks for {value}, and the device's {limit} is {maximum}")]
     OverDeviceLimit {
-        /// Path of the field.
+        /// Path of the field that set the size: lower it, or create the device with a higher limit. Where no field does (a point
+        /// light has six faces), what the device is too small for.
         field: &'static str,
         /// Name of the limit in `wgpu::Limits`.
         limit: &'static str,
-        /// The device's value of it.
-        maximum: u32,
-        /// The value asked for.
-        value: u32,
+        /// The device's value of it, in the limit's own unit: texels, layers, bytes.
+        maximum: u64,
+        /// What is needed, in the same unit.
+        value: u64,
     },
     /// A direction of length zero has no direction.
     #[error("{field} must not have length zero")]
@@ -190,6 +191,18 @@ pub enum CasterError {
         size: u64,
         /// Stride of its buffer.
         array_stride: u64,
+    },
+    /// More of something than the device was created with.
+    #[error("{field} asks for {value}, and the device's {limit} is {maximum}")]
+    OverDeviceLimit {
+        /// Path of the field.
+        field: &'static str,
+        /// Name of the limit in `wgpu::Limits`.
+        limit: &'static str,
+        /// The device's value of it, in the limit's own unit.
+        maximum: u64,
+        /// What is needed, in the same unit.
+        value: u64,
     },
     /// A pipeline for no map at all.
     #[error("CasterPipelineDescriptor::depth_formats must not be empty")]
@@ -326,15 +339,15 @@ pub enum BindingsError {
         /// The device's limit.
         maximum: u32,
     },
-    /// More of a resource than one shader stage may use on this device.
+    /// More of a resource than one shader stage may use on this device, or a light whose uniforms are larger than it binds.
     #[error("ShadowBindingsDescriptor::lights need {needed} {limit}, and the device has {maximum}")]
     OverDeviceLimit {
         /// Name of the limit in `wgpu::Limits`.
         limit: &'static str,
-        /// What the set needs.
-        needed: u32,
+        /// What the set needs, in the limit's own unit.
+        needed: u64,
         /// What the device was created with.
-        maximum: u32,
+        maximum: u64,
     },
     /// The device is lost, out of memory, or refused an object: for instance a light of another device.
     #[error("the device did not make {object}: {refusal}")]
@@ -361,6 +374,16 @@ pub enum DebugViewError {
     Format {
         /// The format asked for.
         format: wgpu::TextureFormat,
+    },
+    /// More of something than the device was created with.
+    #[error("DebugView needs {value}, and the device's {limit} is {maximum}")]
+    OverDeviceLimit {
+        /// Name of the limit in `wgpu::Limits`.
+        limit: &'static str,
+        /// The device's value of it, in the limit's own unit.
+        maximum: u64,
+        /// What is needed, in the same unit.
+        value: u64,
     },
     /// An unfolded cross of a light that has no cube.
     #[error(

@@ -73,6 +73,7 @@ mod error;
 mod fit;
 mod fullscreen;
 mod light_maps;
+mod limits;
 mod local_lights;
 mod omni;
 mod pool;

@@ -4,8 +4,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::check;
 use crate::light_maps::{LightMaps, LightMapsDescriptor, light_maps_getters};
+use crate::limits;
 use crate::local_lights::{LocalLights, LocalPlacement};
-use crate::receive::{Sampling, Selection, ShadowViewUniform};
+use crate::receive::{Sampling, Selection};
 use crate::{Bias, Filter, OmniLight, ShadowError, ShadowFrame, ShadowReport, SpotLight};
 
 /// What a pool is made of.
@@ -135,32 +136,8 @@ fn check_descriptor(
         descriptor.capacity > 0,
         descriptor.capacity,
     )?;
-    let limits = device.limits();
-    let view_bytes = size_of::<ShadowViewUniform>() as u64;
-    let by_uniform =
-        limits.max_uniform_buffer_binding_size / (view_bytes * u64::from(views_per_light));
-    let checks = [
-        (
-            "max_texture_array_layers / views per light",
-            limits.max_texture_array_layers / views_per_light,
-        ),
-        (
-            "max_uniform_buffer_binding_size / bytes per light",
-            u32::try_from(by_uniform).unwrap_or(u32::MAX),
-        ),
-    ];
-    match checks
-        .into_iter()
-        .find(|(_, most)| descriptor.capacity > *most)
-    {
-        None => Ok(()),
-        Some((limit, maximum)) => Err(ShadowError::OverDeviceLimit {
-            field,
-            limit,
-            maximum,
-            value: descriptor.capacity,
-        }),
-    }
+    let layers = u64::from(descriptor.capacity) * u64::from(views_per_light);
+    limits::check_layers(device, field, layers)
 }
 
 /// The two pools differ in their lights alone.

@@ -35,11 +35,11 @@ impl DepthMap {
             return Err(ShadowError::OverDeviceLimit {
                 field,
                 limit: "max_texture_dimension_2d",
-                maximum: limits.max_texture_dimension_2d,
-                value: size,
+                maximum: limits.max_texture_dimension_2d.into(),
+                value: size.into(),
             });
         }
-        let allocated = allocated_layers(device, layers);
+        let allocated = allocated_layers(device, layers.into()) as u32;
         let extent = wgpu::Extent3d {
             width: size,
             height: size,
@@ -153,10 +153,10 @@ impl DepthMap {
 
 /// wgpu's OpenGL backend makes a texture of one layer a plain 2D texture, and a square one of a multiple of six layers a cube
 /// map; an array binding then reads nothing. One layer more, never used, keeps it an array.
-fn allocated_layers(device: &wgpu::Device, layers: u32) -> u32 {
+pub(crate) fn allocated_layers(device: &wgpu::Device, layers: u64) -> u64 {
     let opengl = device.adapter_info().backend == wgpu::Backend::Gl;
     let not_an_array = layers == 1 || layers.is_multiple_of(6);
-    layers + u32::from(opengl && not_an_array)
+    layers + u64::from(opengl && not_an_array)
 }
 
 fn bytes(size: u32, layers: u32, format: DepthFormat) -> u64 {

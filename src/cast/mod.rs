@@ -45,14 +45,14 @@ pub use caster::{Revision, ShadowCaster};
 pub use closed::is_closed_solid;
 pub(crate) use content::{Plan, ViewDraws};
 pub use depth_format::DepthFormat;
-pub(crate) use depth_map::DepthMap;
+pub(crate) use depth_map::{DepthMap, allocated_layers};
 pub(crate) use device_scope::{capture_device_errors, filled_buffer};
 pub(crate) use frame_casters::{CasterAnswers, FrameCasters};
 pub use mesh::{MeshCaster, MeshCasterDescriptor, MeshIndices};
 pub use pipeline::{
     CasterPipeline, CasterPipelineDescriptor, CasterVertex, ModelTransform, PositionAttribute,
 };
-pub(crate) use recorder::Recorder;
+pub(crate) use recorder::{Recorder, VIEW_UNIFORM_BYTES};
 pub(crate) use upload::UploadBuffer;
 
 /// Nothing casts (reversed depth).

@@ -7,6 +7,7 @@ use crate::cast::pipeline_build::{ByFormat, create_pipelines};
 use crate::cast::pipeline_reads::{VertexReads, beyond_a_mesh};
 use crate::cast::{DepthFormat, capture_device_errors};
 use crate::error::CasterError;
+use crate::limits;
 
 /// Where the built-in vertex stage finds positions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -182,6 +183,7 @@ impl CasterPipeline {
             }
             CasterVertex::Wgsl { .. } => None,
         };
+        limits::check_caster(device, descriptor)?;
         let by_format = capture_device_errors(device, || create_pipelines(device, descriptor))
             .map_err(|refusal| CasterError::Device {
                 object: "a caster pipeline",

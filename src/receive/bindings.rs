@@ -2,6 +2,7 @@
 
 use crate::cast::capture_device_errors;
 use crate::error::BindingsError;
+use crate::limits::{Need, view_uniform_bytes};
 use crate::receive::filter::FilterSampler;
 use crate::receive::{Sampling, ShadowViewUniform, emit};
 use crate::shader;
@@ -199,38 +200,43 @@ fn check_limits(
             maximum: limits.max_bind_groups,
         });
     }
-    let lights = descriptor.lights.len() as u32;
+    let lights = descriptor.lights.len() as u64;
+    let sampler_count = samplers.len() as u64;
+    let views = descriptor.lights.iter();
+    let most_views = views.map(|(_, source)| source.receiver.view_count).max();
     let needs = [
-        (
+        Need::new(
             "max_sampled_textures_per_shader_stage",
             lights,
             limits.max_sampled_textures_per_shader_stage,
         ),
-        (
+        Need::new(
             "max_uniform_buffers_per_shader_stage",
             lights,
             limits.max_uniform_buffers_per_shader_stage,
         ),
-        (
+        Need::new(
             "max_samplers_per_shader_stage",
-            samplers.len() as u32,
+            sampler_count,
             limits.max_samplers_per_shader_stage,
         ),
-        (
+        Need::new(
             "max_bindings_per_bind_group",
-            2 * lights + samplers.len() as u32,
+            2 * lights + sampler_count,
             limits.max_bindings_per_bind_group,
         ),
+        Need::new(
+            "max_uniform_buffer_binding_size",
+            view_uniform_bytes(most_views.unwrap_or(0).into()),
+            limits.max_uniform_buffer_binding_size,
+        ),
     ];
-    match needs
-        .into_iter()
-        .find(|(_, needed, maximum)| needed > maximum)
-    {
+    match Need::first_unmet(needs) {
         None => Ok(()),
-        Some((limit, needed, maximum)) => Err(BindingsError::OverDeviceLimit {
-            limit,
-            needed,
-            maximum,
+        Some(need) => Err(BindingsError::OverDeviceLimit {
+            limit: need.limit,
+            needed: need.needed,
+            maximum: need.maximum,
         }),
     }
 }
@@ -263,7 +269,7 @@ fn create_layout(
         })
         .collect();
     for (light, (_, source)) in descriptor.lights.iter().enumerate() {
-        let bytes = u64::from(source.receiver.view_count) * size_of::<ShadowViewUniform>() as u64;
+        let bytes = view_uniform_bytes(source.receiver.view_count.into());
         let views = views_binding(samplers, light);
         entries.push(entry(
             views,

@@ -144,7 +144,7 @@ fn bindings_beyond_the_devices_limits() {
         .map(|name| (name.as_str(), sun.source()))
         .collect();
     assert_eq!(bind(1, &lights[..most]), Ok(()));
-    let (needed, maximum) = (most as u32 + 1, most as u32);
+    let (needed, maximum) = (most as u64 + 1, most as u64);
     let error = bind(1, &lights).expect_err("too many");
     let limit = "max_uniform_buffers_per_shader_stage";
     assert_eq!(

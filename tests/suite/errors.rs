@@ -78,14 +78,14 @@ fn maps_larger_than_the_device_allows() {
     let wanted = ShadowError::OverDeviceLimit {
         field: "DirectionalShadowDescriptor::map_size",
         limit: "max_texture_dimension_2d",
-        maximum,
-        value: maximum + 1,
+        maximum: maximum.into(),
+        value: u64::from(maximum) + 1,
     };
     assert_eq!(error, wanted);
     assert_eq!(
         error.to_string(),
         format!(
-            "DirectionalShadowDescriptor::map_size must be at most the device's max_texture_dimension_2d = {maximum}, got {}",
+            "DirectionalShadowDescriptor::map_size asks for {}, and the device's max_texture_dimension_2d is {maximum}",
             maximum + 1
         )
     );

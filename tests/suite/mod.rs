@@ -16,6 +16,7 @@ mod debug_view;
 mod depth_formats;
 mod depth_rounding;
 mod depth_texture;
+mod device_limits;
 mod device_loss;
 mod direction_filters;
 mod emitted_wgsl;

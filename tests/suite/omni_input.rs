@@ -46,8 +46,8 @@ fn sizes_that_no_map_has() {
     let large = ShadowError::OverDeviceLimit {
         field,
         limit: "max_texture_dimension_2d",
-        maximum: most,
-        value: most + 1,
+        maximum: most.into(),
+        value: u64::from(most) + 1,
     };
     assert_eq!(lamp(most + 1).expect_err("too large"), large);
     lamp(1).expect("one texel is a map");

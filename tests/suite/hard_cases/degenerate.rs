@@ -202,7 +202,7 @@ fn maps_of_every_size() {
     assert!(matches!(zero, ShadowError::OutOfRange { .. }), "{zero:?}");
     let over = new(largest + 1).expect_err("too large");
     assert!(
-        matches!(over, ShadowError::OverDeviceLimit { value, maximum, .. } if value == largest + 1 && maximum == largest),
+        matches!(over, ShadowError::OverDeviceLimit { value, maximum, .. } if value == u64::from(largest) + 1 && maximum == u64::from(largest)),
         "{over:?}"
     );
     table::record(
