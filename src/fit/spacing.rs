@@ -34,9 +34,9 @@ pub(crate) struct Spacing {
 impl Spacing {
     /// For what lies in `required`, of a render space that begins at `origin`.
     pub fn around(origin: DVec3, required: &LightBox) -> Self {
-        // A render coordinate and the origin may cancel each other, so the sum is what counts.
+        // The origin counts by itself where render coordinates lead from it back to the world's.
         Self {
-            coordinate: origin.length() + required.reach(),
+            coordinate: origin.length().max(required.reach()),
         }
     }
 

@@ -128,7 +128,7 @@ fn all(gpu: &Gpu, what: &str) -> usize {
     }
     let formats = [
         wgpu::TextureFormat::Rgba8Unorm,
-        wgpu::TextureFormat::Rgba32Float,
+        wgpu::TextureFormat::Rgba16Float,
     ];
     let [debug_view, _] =
         formats.map(|format| answered(DebugView::new(device, format), what, refusals));
