@@ -221,18 +221,6 @@ pub enum CasterError {
         /// The topology asked for.
         topology: wgpu::PrimitiveTopology,
     },
-    /// More of a resource than the device was created with.
-    #[error("{field} need {needed} of the device's {limit} = {maximum}")]
-    OverDeviceLimit {
-        /// Path of the field.
-        field: &'static str,
-        /// Name of the limit in `wgpu::Limits`.
-        limit: &'static str,
-        /// The device's value of it.
-        maximum: u32,
-        /// What the field needs.
-        needed: usize,
-    },
     /// An object of another device than the one that is made use of.
     #[error("{field} must have been made on the device that is passed")]
     OtherDevice {

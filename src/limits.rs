@@ -143,7 +143,7 @@ fn vertex_needs(vertex: &CasterVertex<'_>) -> VertexNeeds {
     }
 }
 
-/// Can `device` make the pipelines of a caster? What an engine's own bind groups hold is between it and the device.
+/// Can `device` make the pipelines of a caster? wgpu panics over more bind groups or vertex buffers than it has room for. What an engine's own bind groups hold is between it and the device.
 pub(crate) fn check_caster(
     device: &wgpu::Device,
     descriptor: &CasterPipelineDescriptor<'_>,

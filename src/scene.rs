@@ -21,20 +21,21 @@ pub enum Coverage<'a> {
     Everything,
 }
 
-/// What a frame brings.
+/// What a frame brings. The casters are borrowed for as long as lights are recorded with the frame, the rest only while it is
+/// made.
 #[derive(Clone, Copy)]
-pub struct ShadowFrameDescriptor<'a> {
+pub struct ShadowFrameDescriptor<'d, 'c> {
     /// World position of render space's origin, f64. Zero unless the engine renders relative to its camera. Texels keep their
     /// places in the world, so f64 must tell them apart there: with texels of `t` units, in maps of 64 or more a side, a frame is
     /// accepted up to at least `2⁴⁷ t` units from the world's origin, 1.4·10¹² for a centimetre. Some hundred times as far it is
     /// [`ShadowError::ViewNotRepresentable`].
     pub origin: DVec3,
     /// Which receivers the shadows are for.
-    pub coverage: Coverage<'a>,
+    pub coverage: Coverage<'d>,
     /// Everything that may cast. All of it receives as well, unless [`ShadowCaster::receives`] says otherwise.
-    pub casters: &'a [&'a dyn ShadowCaster],
+    pub casters: &'c [&'c dyn ShadowCaster],
     /// Bounds in render space of surfaces that receive and do not cast.
-    pub receivers: &'a [Aabb],
+    pub receivers: &'d [Aabb],
 }
 
 /// The scene that lights share. It keeps the memory of its lists from frame to frame.
@@ -59,7 +60,7 @@ impl ShadowScene {
     /// [`ShadowError`] for an origin, camera or box that is not finite or describes no volume.
     pub fn frame<'a>(
         &'a mut self,
-        descriptor: &ShadowFrameDescriptor<'a>,
+        descriptor: &ShadowFrameDescriptor<'_, 'a>,
     ) -> Result<ShadowFrame<'a>, ShadowError> {
         check::finite_vector("ShadowFrameDescriptor::origin", descriptor.origin)?;
         self.cameras.clear();

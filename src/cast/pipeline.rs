@@ -174,7 +174,6 @@ impl CasterPipeline {
         if descriptor.depth_formats.is_empty() {
             return Err(CasterError::NoDepthFormat);
         }
-        check_counts(device, descriptor)?;
         let built_in = match descriptor.vertex {
             CasterVertex::BuiltIn { position, model } => {
                 check_position(&position)?;
@@ -260,49 +259,6 @@ impl CasterPipeline {
     /// Returns what the pipeline takes that a ready-made mesh does not set.
     pub(crate) fn beyond_a_mesh(&self) -> Option<String> {
         self.variants.beyond_a_mesh.clone()
-    }
-}
-
-/// Checks the number of the engine's bind groups, with the view's, and of its vertex buffers against the device's limits. wgpu
-/// panics over numbers that it has no room for, whatever the limits.
-fn check_counts(
-    device: &wgpu::Device,
-    descriptor: &CasterPipelineDescriptor<'_>,
-) -> Result<(), CasterError> {
-    let CasterVertex::Wgsl {
-        buffers,
-        bind_group_layouts,
-        ..
-    } = descriptor.vertex
-    else {
-        return Ok(());
-    };
-    let limits = device.limits();
-    let counts = [
-        (
-            "CasterVertex::Wgsl::bind_group_layouts (and the view's group 0)",
-            bind_group_layouts.len().saturating_add(1),
-            "max_bind_groups",
-            limits.max_bind_groups,
-        ),
-        (
-            "CasterVertex::Wgsl::buffers",
-            buffers.len(),
-            "max_vertex_buffers",
-            limits.max_vertex_buffers,
-        ),
-    ];
-    let over = counts
-        .into_iter()
-        .find(|(_, needed, _, maximum)| *needed > *maximum as usize);
-    match over {
-        None => Ok(()),
-        Some((field, needed, limit, maximum)) => Err(CasterError::OverDeviceLimit {
-            field,
-            limit,
-            maximum,
-            needed,
-        }),
     }
 }
 

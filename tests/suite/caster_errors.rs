@@ -206,18 +206,17 @@ fn more_bind_groups_than_the_device_takes() {
             continue;
         }
         let error = created.expect_err("too many groups");
-        let field = "CasterVertex::Wgsl::bind_group_layouts (and the view's group 0)";
+        let (field, value) = ("CasterPipelineDescriptor::vertex", count as u64 + 1);
         let wanted = CasterError::OverDeviceLimit {
             field,
             limit: "max_bind_groups",
-            maximum,
-            needed: count + 1,
+            maximum: maximum.into(),
+            value,
         };
         assert_eq!(error, wanted);
-        let needed = count + 1;
         assert_eq!(
             error.to_string(),
-            format!("{field} need {needed} of the device's max_bind_groups = {maximum}")
+            format!("{field} asks for {value}, and the device's max_bind_groups is {maximum}")
         );
     }
 }

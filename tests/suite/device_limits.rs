@@ -6,13 +6,13 @@ use std::fmt::Debug;
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
     Aabb, BindingsError, CasterError, CasterPipeline, CasterPipelineDescriptor, CasterVertex,
-    Coverage, DebugPicture, DebugView, DebugViewError, DirectionalFrame, DirectionalLight,
-    DirectionalShadow, DirectionalShadowDescriptor, ModelTransform, OmniShadow,
-    OmniShadowDescriptor, OmniShadowPool, PoolDescriptor, PositionAttribute, ShadowBindings,
-    ShadowBindingsDescriptor, ShadowError, ShadowViewUniform, SpotShadow, SpotShadowDescriptor,
-    SpotShadowPool,
+    DebugPicture, DebugView, DebugViewError, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, ModelTransform, OmniShadow, OmniShadowDescriptor, OmniShadowPool,
+    PoolDescriptor, PositionAttribute, ShadowBindings, ShadowBindingsDescriptor, ShadowError,
+    ShadowViewUniform, SpotShadow, SpotShadowDescriptor, SpotShadowPool,
 };
 
+use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};
 use crate::support::gpu::{Gpu, GpuRequest};
 use crate::support::picture::{color_pass, color_target};
 use crate::support::scene::Mesh;
@@ -175,7 +175,7 @@ fn all(gpu: &Gpu, what: &str) -> usize {
         casters: &[&slab],
         receivers: &[],
     };
-    sun.record(device, &mut encoder, &frame).expect(what);
+    sun.record_frame(&mut encoder, &frame).expect(what);
     gpu.submit(encoder);
     refused
 }

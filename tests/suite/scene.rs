@@ -304,13 +304,12 @@ fn two_cameras_share_the_maps_of_local_lights() {
     cone.record(&mut encoder, &frame, &spot)
         .expect("a valid frame");
     gpu.submit(encoder);
+    let coarsest = |texels: &mut dyn Iterator<Item = f32>| f64::from(texels.fold(0.0, f32::max));
+    let texel = |view: &ShadowView| view.texel_size_world().max_element();
     let texels = [
-        both.views()
-            .map(|view| view.texel_size_world().max_element()),
-        cone.views()
-            .map(|view| view.texel_size_world().max_element()),
-    ]
-    .map(|texels| f64::from(texels.fold(0.0, f32::max)));
+        coarsest(&mut both.views().map(texel)),
+        coarsest(&mut cone.views().map(texel)),
+    ];
     for yard in 0..2 {
         for (ask, texel) in asks.iter().zip(texels) {
             // A kernel of 2.83 texels to its corner, stretched by the low angle at which the light meets the floor.
