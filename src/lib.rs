@@ -64,44 +64,36 @@
 #![forbid(unsafe_code)]
 
 mod aabb;
-mod cascade_tint;
 mod cast;
 mod check;
-mod debug_view;
-mod directional;
+mod debug;
 mod error;
 mod fit;
-mod fullscreen;
-mod light_maps;
-mod limits;
-mod local_lights;
-mod omni;
-mod pool;
+mod gpu;
+mod light;
 mod receive;
-mod report;
-mod scene;
 pub mod shader;
-mod spot;
 
 pub use aabb::Aabb;
 pub use cast::{
-    CasterPipeline, CasterPipelineDescriptor, CasterVertex, DepthFormat, MeshCaster,
-    MeshCasterDescriptor, MeshIndices, ModelTransform, PositionAttribute, Revision, ShadowCaster,
-    is_closed_solid,
+    CasterPipeline, CasterPipelineDescriptor, CasterVertex, MeshCaster, MeshCasterDescriptor,
+    MeshIndices, ModelTransform, PositionAttribute, Revision, ShadowCaster, is_closed_solid,
 };
-pub use debug_view::{DebugPicture, DebugView};
-pub use directional::{DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor};
+pub use debug::{DebugPicture, DebugView};
 pub use error::{BindingsError, CasterError, DebugViewError, DeviceRefusal, ShadowError};
 pub use fit::{CameraView, CascadeSplit, ShadowView, SliceReport, Stability};
-pub use omni::{OmniLight, OmniShadow, OmniShadowDescriptor};
-pub use pool::{OmniShadowPool, PoolDescriptor, PoolLight, ShadowSlot, SpotShadowPool};
+pub use gpu::DepthFormat;
+pub use light::{
+    Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniLight,
+    OmniShadow, OmniShadowDescriptor, OmniShadowPool, PoolDescriptor, PoolLight, ShadowFrame,
+    ShadowFrameDescriptor, ShadowReport, ShadowScene, ShadowSlot, SpotLight, SpotShadow,
+    SpotShadowDescriptor, SpotShadowPool, ViewReport, ViewStatus,
+};
 pub use receive::{
     Bias, Filter, ShadowBindings, ShadowBindingsDescriptor, ShadowSource, ShadowViewUniform,
     reference,
 };
-pub use report::{ShadowReport, ViewReport, ViewStatus};
-pub use scene::{Coverage, ShadowFrame, ShadowFrameDescriptor, ShadowScene};
-pub use spot::{SpotLight, SpotShadow, SpotShadowDescriptor};
+pub use {glam, wgpu};
 
 #[cfg(doc)]
 #[doc = include_str!("../doc/hard_cases.md")]

@@ -6,11 +6,12 @@ use crate::ShadowError;
 use crate::cast::content::ViewDraws;
 use crate::cast::cube_rule::one_pass_casters;
 use crate::cast::draw_casters::{DrawnCaster, PassDefaults, draw_casters};
-use crate::cast::multiview::{FACE_COUNT, SIX_VIEWS, draws_six_views};
-use crate::cast::pipeline_build::six_views_layout;
-use crate::cast::recorder::{CasterViewUniform, VIEW_UNIFORM_BYTES};
-use crate::cast::upload::{PendingUpload, UploadBuffer};
-use crate::cast::{CasterPipeline, DepthMap, FrameCasters, capture_device_errors};
+use crate::cast::view_uniform::{CasterViewUniform, VIEW_UNIFORM_BYTES, six_views_layout};
+use crate::cast::{CasterPipeline, FrameCasters};
+use crate::gpu::{
+    DepthMap, FACE_COUNT, PendingUpload, SIX_VIEWS, UploadBuffer, capture_device_errors,
+    draws_six_views,
+};
 
 /// Uniforms of six views for one pass.
 #[derive(Debug)]

@@ -2,11 +2,12 @@
 
 use std::sync::OnceLock;
 
-use crate::cast::pipeline::{
+use crate::cast::pipeline_build;
+use crate::cast::pipeline_build::BothWindings;
+use crate::cast::pipeline_descriptor::{
     CasterPipelineDescriptor, CasterVertex, ModelTransform, PositionAttribute,
 };
-use crate::cast::pipeline_build::BothWindings;
-use crate::cast::{DepthFormat, capture_device_errors, pipeline_build};
+use crate::gpu::{DepthFormat, capture_device_errors};
 
 /// Format of the maps of point lights.
 const CUBE_FORMAT: DepthFormat = DepthFormat::Float32;

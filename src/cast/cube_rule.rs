@@ -10,9 +10,9 @@
 
 use glam::Vec4;
 
-use crate::cast::multiview::FACE_COUNT;
 use crate::cast::{FrameCasters, ViewDraws};
 use crate::fit::ViewPlacement;
+use crate::gpu::FACE_COUNT;
 use crate::{Aabb, ShadowView};
 
 /// Most triangles through all faces that are worth one draw call saved.

@@ -6,8 +6,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use glam::Mat4;
 
 use crate::cast::mesh_check::{check_bounds, check_buffers, check_matrix, check_pipeline};
-use crate::cast::{CasterPipeline, ModelTransform, Revision, ShadowCaster, filled_buffer};
+use crate::cast::{CasterPipeline, ModelTransform, Revision, ShadowCaster};
 use crate::error::CasterError;
+use crate::gpu::filled_buffer;
 use crate::{Aabb, ShadowView};
 
 /// What of its buffers a [`MeshCaster`] draws.

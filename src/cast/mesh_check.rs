@@ -4,8 +4,9 @@ use std::ops::Range;
 
 use glam::Mat4;
 
-use crate::cast::{CasterPipeline, MeshCasterDescriptor, MeshIndices, capture_device_errors};
+use crate::cast::{CasterPipeline, MeshCasterDescriptor, MeshIndices};
 use crate::error::CasterError;
+use crate::gpu::capture_device_errors;
 use crate::{Aabb, DeviceRefusal};
 
 pub(crate) fn check_matrix(render_from_model: &Mat4) -> Result<(), CasterError> {

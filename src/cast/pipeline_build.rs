@@ -2,12 +2,11 @@
 
 use std::num::NonZeroU32;
 
-use crate::cast::DepthFormat;
-use crate::cast::multiview::{FACE_COUNT, SIX_VIEWS};
-use crate::cast::pipeline::{
+use crate::cast::pipeline_descriptor::{
     CasterPipelineDescriptor, CasterVertex, ModelTransform, PositionAttribute,
 };
-use crate::cast::recorder::VIEW_UNIFORM_BYTES;
+use crate::cast::view_uniform::{six_views_layout, view_layout};
+use crate::gpu::{DepthFormat, SIX_VIEWS};
 use crate::shader;
 
 /// The pipeline as described, and with the other winding; the same where nothing is culled.
@@ -57,38 +56,6 @@ pub(crate) fn six_views(
     let modules = [shader::CASTER_MULTIVIEW, shader::CASTER_BUILTIN_MULTIVIEW];
     let source = modules.map(|module| module.source).concat();
     built_in(device, descriptor, &source, position, model, SIX_VIEWS)
-}
-
-/// Layout of bind group 0: the view being rendered, chosen by a dynamic offset.
-pub(crate) fn view_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    uniform_layout(device, "shadow caster view", VIEW_UNIFORM_BYTES, true)
-}
-
-/// Layout of bind group 0 where six views are rendered at once.
-pub(crate) fn six_views_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let bytes = VIEW_UNIFORM_BYTES * u64::from(FACE_COUNT);
-    uniform_layout(device, "shadow caster faces", bytes, false)
-}
-
-fn uniform_layout(
-    device: &wgpu::Device,
-    label: &str,
-    bytes: u64,
-    has_dynamic_offset: bool,
-) -> wgpu::BindGroupLayout {
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some(label),
-        entries: &[wgpu::BindGroupLayoutEntry {
-            binding: 0,
-            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-            ty: wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Uniform,
-                has_dynamic_offset,
-                min_binding_size: wgpu::BufferSize::new(bytes),
-            },
-            count: None,
-        }],
-    })
 }
 
 fn built_in(

@@ -1,27 +1,12 @@
 //! Which views need drawing this frame, and the passes that draw them.
 
-use bytemuck::{Pod, Zeroable};
-
 use crate::cast::content::{Content, Plan, ViewDraws};
 use crate::cast::cube_pass::{CubePass, PreparedCubePass};
 use crate::cast::draw_casters::{DrawnCaster, PassDefaults, draw_casters};
-use crate::cast::pipeline_build::view_layout;
-use crate::cast::upload::{PendingUpload, UploadBuffer};
-use crate::cast::{
-    CLEAR, CasterPipeline, DepthFormat, DepthMap, FrameCasters, capture_device_errors,
-};
+use crate::cast::view_uniform::{CasterViewUniform, VIEW_UNIFORM_BYTES, view_layout};
+use crate::cast::{CLEAR, CasterPipeline, FrameCasters};
+use crate::gpu::{DepthFormat, DepthMap, PendingUpload, UploadBuffer, capture_device_errors};
 use crate::{ShadowError, ShadowView};
-
-/// Mirror of `ShadowCasterView` in `wgsl/caster.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct CasterViewUniform {
-    pub clip_from_anchor: [[f32; 4]; 4],
-    pub anchor_render: [f32; 3],
-    pub map_size: f32,
-}
-
-pub(crate) const VIEW_UNIFORM_BYTES: u64 = size_of::<CasterViewUniform>() as u64;
 
 /// Draws views into the layers of a depth map, and remembers what each layer holds.
 #[derive(Debug)]
@@ -60,16 +45,6 @@ impl PreparedViews<'_> {
     /// Was anything made on the device?
     pub fn uploads(&self) -> bool {
         self.upload.is_some() || self.cube.as_ref().is_some_and(PreparedCubePass::uploads)
-    }
-}
-
-impl CasterViewUniform {
-    pub fn of(view: &ShadowView) -> Self {
-        Self {
-            clip_from_anchor: view.clip_from_anchor().to_cols_array_2d(),
-            anchor_render: view.anchor_render().to_array(),
-            map_size: view.map_size() as f32,
-        }
     }
 }
 

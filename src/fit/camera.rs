@@ -3,8 +3,8 @@
 use glam::{DMat4, DVec3, DVec4, Mat4, Vec3};
 
 use crate::ShadowError;
+use crate::fit::picture_corners::{PictureCorners, SliceSphere};
 use crate::fit::region::{HalfSpace, HalfSpaces};
-use crate::fit::stability::PictureCorners;
 
 /// The camera whose picture the shadows are for.
 ///
@@ -106,8 +106,8 @@ pub(crate) struct CameraFrustum {
     pub planes: HalfSpaces,
     eye: DVec3,
     forward: DVec3,
-    pub(super) render_from_view: DMat4,
-    pub(super) corners: PictureCorners,
+    render_from_view: DMat4,
+    corners: PictureCorners,
     max_distance: f64,
 }
 
@@ -126,6 +126,27 @@ impl CameraFrustum {
     /// Unit vector along the view.
     pub fn forward(&self) -> DVec3 {
         self.forward
+    }
+
+    /// World height of the picture at a depth along the view; infinite where its corners lie at infinity, as a projection that
+    /// leans far enough has it.
+    pub fn picture_height(&self, depth: f64) -> f64 {
+        let [bottom, _, top, _] = self.corners.at(depth);
+        let height = bottom.distance(top);
+        if height.is_nan() {
+            f64::INFINITY
+        } else {
+            height
+        }
+    }
+
+    /// A sphere that holds the slice between two depths along the view.
+    pub fn slice_sphere(&self, depth_near: f64, depth_far: f64) -> SliceSphere {
+        let (center, radius) = self.corners.sphere_in_view(depth_near, depth_far);
+        SliceSphere {
+            center_render: self.render_from_view.transform_point3(center),
+            radius,
+        }
     }
 
     /// Where the camera stands.

@@ -7,6 +7,7 @@ use glam::{DVec2, DVec3};
 
 use crate::Aabb;
 use crate::fit::axes::LightAxes;
+use crate::fit::local_input::LocalInput;
 use crate::fit::reached::{self, Reached};
 use crate::fit::region::{HalfSpace, HalfSpaces, Relation};
 use crate::fit::window::{MapWindow, WindowRequest};
@@ -18,30 +19,6 @@ pub(crate) const MAX_LOCAL_VIEWS: usize = 6;
 /// that starts at the near plane its error at distance w is w² / near · 2⁻²⁴, at the full reach 1024 · 2⁻²⁴ = 6·10⁻⁵ of it.
 /// Casters nearer to the light than this cast nothing.
 const NEAREST_SHARE: f64 = 1.0 / 1024.0;
-
-/// What a frame brings.
-pub(crate) struct LocalInput<'a> {
-    pub origin: DVec3,
-    pub position_world: DVec3,
-    /// World units; may be infinite.
-    pub range: f64,
-    /// Axes of each view: it looks against its z axis.
-    pub views: &'a [LightAxes],
-    /// Tangent of half the angle over which a view has receivers.
-    pub receiver_tangent: f64,
-    /// The same for casters: wider by what a kernel at the border reaches.
-    pub caster_tangent: f64,
-    /// Lookups reach beyond the place of their receiver: views are not limited to where receivers are seen.
-    pub looks_around: bool,
-    /// Receivers count where they lie in one of these regions: what the cameras see, or everywhere.
-    pub seen: &'a [HalfSpaces],
-    /// Bounds of what casts; empty ones cast nothing.
-    pub casters: &'a [Aabb],
-    /// Bounds of what receives.
-    pub receivers: &'a [Aabb],
-    pub map_size: u32,
-    pub margin_texels: u32,
-}
 
 /// The windows of a local light, kept from frame to frame for their hysteresis.
 #[derive(Clone, Debug, Default)]

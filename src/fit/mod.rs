@@ -9,12 +9,13 @@
 //! window.rs       the rectangle of a map plane that a view covers, snapped to whole texels
 //! spacing.rs      how finely f64 tells places apart, far from the world's origin
 //! split.rs        where one cascade ends and the next begins
-//! stability.rs    extents that no motion of the camera changes
+//! stability.rs    what may change the extent of a cascade
+//! picture_corners.rs  the sphere around a slice of a camera's view
 //! visible.rs      what a camera sees of the receivers
 //! column.rs       what reaches into the space over a window
 //! directional.rs  all of it put together for a sun
 //! reached.rs      what a local light reaches
-//! local.rs        the same for the views of a spot or point light
+//! local.rs        the same for the views of a spot or point light; local_input.rs: what it starts from
 //! view.rs         ShadowView: the value that the upper floors render and sample with
 //! ```
 
@@ -25,6 +26,8 @@ mod directional;
 mod footprint;
 mod ladder;
 mod local;
+mod local_input;
+mod picture_corners;
 mod reached;
 mod region;
 mod spacing;
@@ -43,7 +46,8 @@ pub(crate) use directional::{
     DirectionalFit, FitInput, FitLimits, FitScratch, MAX_CASCADES, Region,
 };
 pub use footprint::SliceReport;
-pub(crate) use local::{LocalFit, LocalInput, MAX_LOCAL_VIEWS};
+pub(crate) use local::{LocalFit, MAX_LOCAL_VIEWS};
+pub(crate) use local_input::LocalInput;
 pub(crate) use reached::Reached;
 pub(crate) use region::HalfSpaces;
 pub(crate) use spacing::Spacing;

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::Aabb;
-use crate::fit::local::LocalInput;
+use crate::fit::local_input::LocalInput;
 use crate::fit::region::Relation;
 
 /// The casters and receivers within a light's reach. Lists keep their memory from frame to frame.

@@ -1,9 +1,9 @@
 //! One bind group for a set of lights, and the WGSL for exactly that set.
 
-use crate::cast::capture_device_errors;
 use crate::error::BindingsError;
-use crate::limits::{Need, view_uniform_bytes};
+use crate::gpu::{Need, capture_device_errors};
 use crate::receive::filter::FilterSampler;
+use crate::receive::uniforms::view_uniform_bytes;
 use crate::receive::{Sampling, ShadowViewUniform, emit};
 use crate::shader;
 

@@ -21,4 +21,6 @@ pub(crate) use bindings::{Receiver, Selection};
 pub use bindings::{ShadowBindings, ShadowBindingsDescriptor, ShadowSource};
 pub use filter::Filter;
 pub use uniforms::ShadowViewUniform;
-pub(crate) use uniforms::{Sampling, empty_view_uniform, endless_range, view_uniform};
+pub(crate) use uniforms::{
+    Sampling, empty_view_uniform, endless_range, view_uniform, view_uniform_bytes,
+};

@@ -3,8 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
-use crate::cast::DepthFormat;
 use crate::fit::ShadowView;
+use crate::gpu::DepthFormat;
 use crate::receive::bias::lateral_error_texels;
 use crate::receive::{Bias, Filter};
 
@@ -60,6 +60,11 @@ pub struct ShadowViewUniform {
     pub fade_texels: f32,
     /// Where the first texel lies in a grid that is fixed in the world, modulo 65536: x in the low half, y in the high.
     pub grid: u32,
+}
+
+/// Bytes of the uniforms of `views` views.
+pub(crate) fn view_uniform_bytes(views: u64) -> u64 {
+    views * size_of::<ShadowViewUniform>() as u64
 }
 
 /// A range for the uniforms: an endless one becomes a distance that none exceeds and whose square is finite.

@@ -8,10 +8,12 @@ use crate::fit::{
     Column, DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, MAX_CASCADES, Region,
     Spacing,
 };
-use crate::light_maps::{LayerBase, LightMaps, LightMapsDescriptor, MapsFrame, light_maps_getters};
-use crate::limits;
+use crate::light::layer_limits::check_layers;
+use crate::light::maps::{
+    LayerBase, LightMaps, LightMapsDescriptor, MapsFrame, light_maps_getters,
+};
+use crate::light::report::ShadowReport;
 use crate::receive::{Sampling, Selection};
-use crate::report::ShadowReport;
 use crate::{
     Bias, CascadeSplit, DepthFormat, Filter, ShadowError, ShadowFrame, ShadowView, Stability,
 };
@@ -154,7 +156,7 @@ impl DirectionalShadow {
             descriptor.filter.light_size(),
         )?;
         check::bias("DirectionalShadowDescriptor::bias", descriptor.bias)?;
-        limits::check_layers(
+        check_layers(
             device,
             "DirectionalShadowDescriptor::cascades",
             descriptor.cascades.into(),

@@ -1,6 +1,6 @@
 //! The depth texture that a light owns: one layer per view.
 
-use crate::cast::{DepthFormat, capture_device_errors};
+use crate::gpu::{DepthFormat, capture_device_errors};
 use crate::{DeviceRefusal, ShadowError};
 
 /// A layered depth texture, with one attachment per layer and one view of them all.

@@ -4,9 +4,9 @@ use glam::DVec3;
 
 use crate::check;
 use crate::fit::LightAxes;
-use crate::light_maps::{LightMaps, LightMapsDescriptor, light_maps_getters};
-use crate::limits;
-use crate::local_lights::{LocalLights, LocalPlacement};
+use crate::light::layer_limits::check_layers;
+use crate::light::local::{LocalLights, LocalPlacement};
+use crate::light::maps::{LightMaps, LightMapsDescriptor, light_maps_getters};
 use crate::receive::{Sampling, Selection};
 use crate::{Bias, Filter, ShadowError, ShadowFrame, ShadowReport};
 
@@ -81,7 +81,7 @@ impl OmniShadow {
     ) -> Result<Self, ShadowError> {
         check::filter("OmniShadowDescriptor::filter", descriptor.filter)?;
         check::bias("OmniShadowDescriptor::bias", descriptor.bias)?;
-        limits::check_layers(device, "the six faces of an OmniShadow", 6)?;
+        check_layers(device, "the six faces of an OmniShadow", 6)?;
         let maps = LightMaps::new(
             device,
             &LightMapsDescriptor {

@@ -4,9 +4,9 @@ use glam::{DVec3, Vec3};
 
 use crate::check;
 use crate::fit::{LightAxes, MAX_LOCAL_VIEWS};
-use crate::light_maps::{LightMaps, LightMapsDescriptor, light_maps_getters};
-use crate::limits;
-use crate::local_lights::{LocalLights, LocalPlacement};
+use crate::light::layer_limits::check_layers;
+use crate::light::local::{LocalLights, LocalPlacement};
+use crate::light::maps::{LightMaps, LightMapsDescriptor, light_maps_getters};
 use crate::receive::{Sampling, Selection};
 use crate::{Bias, Filter, ShadowError, ShadowFrame, ShadowReport};
 
@@ -73,7 +73,7 @@ impl SpotShadow {
     ) -> Result<Self, ShadowError> {
         check::planar_filter("SpotShadowDescriptor::filter", descriptor.filter)?;
         check::bias("SpotShadowDescriptor::bias", descriptor.bias)?;
-        limits::check_layers(device, "the map of a SpotShadow", 1)?;
+        check_layers(device, "the map of a SpotShadow", 1)?;
         let maps = LightMaps::new(
             device,
             &LightMapsDescriptor {

@@ -3,9 +3,9 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::check;
-use crate::light_maps::{LightMaps, LightMapsDescriptor, light_maps_getters};
-use crate::limits;
-use crate::local_lights::{LocalLights, LocalPlacement};
+use crate::light::layer_limits::check_layers;
+use crate::light::local::{LocalLights, LocalPlacement};
+use crate::light::maps::{LightMaps, LightMapsDescriptor, light_maps_getters};
 use crate::receive::{Sampling, Selection};
 use crate::{Bias, Filter, OmniLight, ShadowError, ShadowFrame, ShadowReport, SpotLight};
 
@@ -137,7 +137,7 @@ fn check_descriptor(
         descriptor.capacity,
     )?;
     let layers = u64::from(descriptor.capacity) * u64::from(views_per_light);
-    limits::check_layers(device, field, layers)
+    check_layers(device, field, layers)
 }
 
 /// The two pools differ in their lights alone.

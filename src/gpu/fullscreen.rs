@@ -2,7 +2,7 @@
 
 /// For passes with one colour target, no depth attachment and one sample. `module` holds `wgsl/pass/fullscreen.wgsl` and
 /// `fragment_entry`. Device errors are for the caller's scope.
-pub(crate) fn pipeline(
+pub(crate) fn fullscreen_pipeline(
     device: &wgpu::Device,
     label: &str,
     layout: &wgpu::BindGroupLayout,

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use crate::cast::ViewDraws;
 use crate::fit::{LightAxes, LocalFit, LocalInput, MAX_LOCAL_VIEWS, Reached};
-use crate::light_maps::{LayerBase, LightMaps, MapsFrame};
+use crate::light::maps::{LayerBase, LightMaps, MapsFrame};
 use crate::{ShadowError, ShadowFrame, ShadowReport, ShadowView};
 
 /// State of the lights in the slots of one set of maps.

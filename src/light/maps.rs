@@ -2,14 +2,13 @@
 
 use glam::Vec3;
 
-use crate::cast::{
-    DepthMap, FrameCasters, Plan, Recorder, UploadBuffer, ViewDraws, capture_device_errors,
-};
+use crate::cast::{FrameCasters, Plan, Recorder, ViewDraws};
+use crate::gpu::{DepthMap, UploadBuffer, capture_device_errors};
+use crate::light::report::{ShadowReport, ViewReport, ViewStatus};
 use crate::receive::{
     Receiver, Sampling, Selection, ShadowSource, ShadowViewUniform, empty_view_uniform,
     endless_range, view_uniform,
 };
-use crate::report::{ShadowReport, ViewReport, ViewStatus};
 use crate::{ShadowError, ShadowView, SliceReport};
 
 /// The common part of a light's shadows.

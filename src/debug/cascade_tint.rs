@@ -3,9 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Mat4;
 
-use crate::cast::{capture_device_errors, filled_buffer};
 use crate::error::DeviceRefusal;
-use crate::fullscreen;
+use crate::gpu::{capture_device_errors, filled_buffer, fullscreen_pipeline};
 use crate::receive::{Receiver, ShadowViewUniform};
 use crate::shader;
 
@@ -155,7 +154,7 @@ fn create_pipeline(
         write_mask: wgpu::ColorWrites::ALL,
     };
     let entry = "shadow_tint_fragment";
-    fullscreen::pipeline(
+    fullscreen_pipeline(
         device,
         "shadow cascade tint",
         layout,

@@ -1,6 +1,6 @@
 //! Small uniform buffers, written in the order of the engine's own commands.
 
-use crate::cast::{capture_device_errors, filled_buffer};
+use crate::gpu::{capture_device_errors, filled_buffer};
 use crate::{DeviceRefusal, ShadowError};
 
 /// A uniform buffer whose writes go through the engine's encoder, so that two frames recorded before one submission each see

@@ -3,11 +3,10 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Mat4;
 
-use crate::cascade_tint::CascadeTint;
-use crate::cast::{capture_device_errors, filled_buffer};
+use crate::debug::cascade_tint::CascadeTint;
+use crate::debug::limits::check_debug_view;
 use crate::error::{DebugViewError, DeviceRefusal};
-use crate::fullscreen;
-use crate::limits;
+use crate::gpu::{capture_device_errors, filled_buffer, fullscreen_pipeline};
 use crate::receive::{Selection, ShadowSource, ShadowViewUniform};
 use crate::shader;
 
@@ -74,7 +73,7 @@ impl DebugView {
         } else {
             FACES as usize
         };
-        limits::check_debug_view(device, format, views as u64)?;
+        check_debug_view(device, format, views as u64)?;
         let create = || {
             let layout = create_layout(device);
             let source = shader::compose(&[shader::DEBUG_VIEW.name]).unwrap_or_default();
@@ -84,7 +83,7 @@ impl DebugView {
             });
             let pipeline = |entry| {
                 let target = format.into();
-                fullscreen::pipeline(device, "shadow debug view", &layout, &module, entry, target)
+                fullscreen_pipeline(device, "shadow debug view", &layout, &module, entry, target)
             };
             Self {
                 format,

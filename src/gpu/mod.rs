@@ -1,0 +1,27 @@
+//! A room beside the stairs: the plumbing between the library and a wgpu device. Knows nothing of shadows.
+//!
+//! ```text
+//! scope.rs        device errors as values
+//! limits.rs       what objects need of a device's limits
+//! depth_format.rs DepthFormat: 32 or 16 bits a texel
+//! depth_map.rs    a layered depth texture
+//! upload.rs       uniform buffers written in command order
+//! multiview.rs    which devices draw six views at once, rightly
+//! fullscreen.rs   pipelines of passes over a whole viewport
+//! ```
+
+mod depth_format;
+mod depth_map;
+mod fullscreen;
+mod limits;
+mod multiview;
+mod scope;
+mod upload;
+
+pub use depth_format::DepthFormat;
+pub(crate) use depth_map::{DepthMap, allocated_layers};
+pub(crate) use fullscreen::fullscreen_pipeline;
+pub(crate) use limits::Need;
+pub(crate) use multiview::{FACE_COUNT, SIX_VIEWS, draws_six_views};
+pub(crate) use scope::{capture_device_errors, filled_buffer};
+pub(crate) use upload::{PendingUpload, UploadBuffer};

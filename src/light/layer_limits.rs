@@ -1,0 +1,47 @@
+//! What the maps of a light need of a device's limits.
+
+use crate::ShadowError;
+use crate::cast::{VIEW_UNIFORM_BYTES, caster_group};
+use crate::gpu::{Need, allocated_layers};
+use crate::receive::view_uniform_bytes;
+
+/// Can `device` hold a light of `layers` layers, one view each? `field` is what set their number.
+pub(crate) fn check_layers(
+    device: &wgpu::Device,
+    field: &'static str,
+    layers: u64,
+) -> Result<(), ShadowError> {
+    let limits = device.limits();
+    let uniform_bytes = view_uniform_bytes(layers);
+    let alignment = u64::from(limits.min_uniform_buffer_offset_alignment);
+    let caster_bytes = VIEW_UNIFORM_BYTES.next_multiple_of(alignment) * layers;
+    let needs = [
+        Need::new(
+            "max_texture_array_layers",
+            allocated_layers(device, layers),
+            limits.max_texture_array_layers,
+        ),
+        Need::new(
+            "max_uniform_buffer_binding_size",
+            uniform_bytes,
+            limits.max_uniform_buffer_binding_size,
+        ),
+        Need::new(
+            "max_buffer_size",
+            uniform_bytes.max(caster_bytes),
+            limits.max_buffer_size,
+        ),
+    ];
+    let over = |field| {
+        move |need: Need| {
+            Err(ShadowError::OverDeviceLimit {
+                field,
+                limit: need.limit,
+                maximum: need.maximum,
+                value: need.needed,
+            })
+        }
+    };
+    Need::first_unmet(needs).map_or(Ok(()), over(field))?;
+    Need::first_unmet(caster_group(&limits)).map_or(Ok(()), over("the depth pass of a light"))
+}
