@@ -1,6 +1,6 @@
 //! How the cost of shadows grows: with casters, lights, cascades, map size, taps and motion; and beside the bare minimum.
 //!
-//! `cargo bench --bench cost`. CPU times are those of `record` and of what an engine cannot avoid, with the allocations made;
+//! `cargo bench --bench cost`. CPU times are those of `ShadowScene::frame` and `record` together, with the allocations made;
 //! device times are ratios, run by run, so that they mean the same on every machine. Each table ends with the exponents of its
 //! growth.
 //!

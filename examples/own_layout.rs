@@ -14,9 +14,9 @@ use std::process::ExitCode;
 use clap::Parser;
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    CasterPipeline, CasterPipelineDescriptor, CasterVertex, Coverage, DirectionalFrame,
-    DirectionalLight, DirectionalShadow, MeshCaster, MeshCasterDescriptor, MeshIndices,
-    ModelTransform, OmniFrame, OmniLight, OmniShadow, PositionAttribute, ShadowCaster, shader,
+    CasterPipeline, CasterPipelineDescriptor, CasterVertex, Coverage, DirectionalLight,
+    DirectionalShadow, MeshCaster, MeshCasterDescriptor, MeshIndices, ModelTransform, OmniLight,
+    OmniShadow, PositionAttribute, ShadowCaster, ShadowFrameDescriptor, ShadowScene, shader,
 };
 
 use common::camera::Camera;
@@ -107,29 +107,16 @@ fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
         0.8,
         SIZE,
     );
+    let mut scene = ShadowScene::new();
+    let frame = scene.frame(&ShadowFrameDescriptor {
+        origin: DVec3::ZERO,
+        coverage: Coverage::Cameras(&[camera.for_shadows()]),
+        casters: &casters,
+        receivers: &[],
+    })?;
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    sun.record(
-        &gpu.device,
-        &mut encoder,
-        &DirectionalFrame {
-            origin: DVec3::ZERO,
-            light: DirectionalLight::new(-TOWARD_SUN),
-            coverage: Coverage::Camera(camera.for_shadows()),
-            casters: &casters,
-            receivers: &[],
-        },
-    )?;
-    lamp.record(
-        &gpu.device,
-        &mut encoder,
-        &OmniFrame {
-            origin: DVec3::ZERO,
-            light: LAMP,
-            camera: Some(camera.for_shadows()),
-            casters: &casters,
-            receivers: &[],
-        },
-    )?;
+    sun.record(&mut encoder, &frame, &DirectionalLight::new(-TOWARD_SUN))?;
+    lamp.record(&mut encoder, &frame, &LAMP)?;
 
     let lighting = Lighting {
         light: TOWARD_SUN.normalize().extend(0.0),

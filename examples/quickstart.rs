@@ -9,9 +9,9 @@ use glam::camera::rh::{proj::directx::perspective_infinite_reverse, view::look_a
 use glam::{DVec3, Mat4, Vec3};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu_shadows::{
-    Aabb, CameraView, CasterPipeline, CasterPipelineDescriptor, Coverage, DirectionalFrame,
-    DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, MeshCaster,
-    MeshCasterDescriptor, MeshIndices, ShadowBindings, ShadowBindingsDescriptor, ShadowCaster,
+    Aabb, CameraView, CasterPipeline, CasterPipelineDescriptor, Coverage, DirectionalLight,
+    DirectionalShadow, DirectionalShadowDescriptor, MeshCaster, MeshCasterDescriptor, MeshIndices,
+    ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowFrameDescriptor, ShadowScene,
 };
 
 /// The engine's own shader. The library's WGSL goes in front of it and brings the two functions that begin with `shadow_`.
@@ -65,7 +65,8 @@ fn draw(engine: &Engine, path: &Path) -> Result<(), Box<dyn Error>> {
     let unit_cube = Aabb::new(Vec3::NEG_ONE, Vec3::ONE);
     let [floor, cubes @ ..] = &engine.render_from_cube;
 
-    // At load time: what casts, the light, and the bind group and WGSL through which shaders ask for it.
+    // At load time: what casts, the light, and the bind group and WGSL through which shaders ask for it. The scene is kept
+    // too, for all lights and all frames.
     let pipeline = CasterPipeline::new(device, &CasterPipelineDescriptor::default())?;
     let caster = |render_from_model: &Mat4| {
         MeshCaster::new(
@@ -81,6 +82,7 @@ fn draw(engine: &Engine, path: &Path) -> Result<(), Box<dyn Error>> {
         )
     };
     let cubes: Vec<MeshCaster> = cubes.iter().map(caster).collect::<Result<_, _>>()?;
+    let mut scene = ShadowScene::new();
     let mut sun = DirectionalShadow::new(device, &DirectionalShadowDescriptor::default())?;
     let bindings = ShadowBindings::new(
         device,
@@ -90,23 +92,18 @@ fn draw(engine: &Engine, path: &Path) -> Result<(), Box<dyn Error>> {
         },
     )?;
 
-    // Every frame: where light and camera are, what casts, and what only receives.
+    // Every frame: where the camera is, what casts, and what only receives; then each light.
     let casters: Vec<&dyn ShadowCaster> = cubes.iter().map(|cube| cube as _).collect();
+    let camera = CameraView::new(engine.view_from_render, engine.clip_from_view);
+    let frame = scene.frame(&ShadowFrameDescriptor {
+        origin: DVec3::ZERO,
+        coverage: Coverage::Cameras(&[camera]),
+        casters: &casters,
+        receivers: &[unit_cube.transformed(floor)],
+    })?;
+    let light = DirectionalLight::new(-engine.toward_light);
     let mut encoder = device.create_command_encoder(&Default::default());
-    sun.record(
-        device,
-        &mut encoder,
-        &DirectionalFrame {
-            origin: DVec3::ZERO,
-            light: DirectionalLight::new(-engine.toward_light),
-            coverage: Coverage::Camera(CameraView::new(
-                engine.view_from_render,
-                engine.clip_from_view,
-            )),
-            casters: &casters,
-            receivers: &[unit_cube.transformed(floor)],
-        },
-    )?;
+    sun.record(&mut encoder, &frame, &light)?;
 
     // The engine's own pass follows in the same encoder; it sets the library's bind group at the index that it chose.
     engine.paint(encoder, &bindings, path)

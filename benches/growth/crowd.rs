@@ -141,6 +141,10 @@ impl ShadowCaster for BoxCaster {
         pass.draw_indexed(0..self.index_count, self.first_vertex, 0..1);
     }
 
+    fn keeps_pass_state(&self) -> bool {
+        true
+    }
+
     fn triangles(&self) -> u32 {
         self.index_count / 3
     }

@@ -4,7 +4,7 @@ use glam::{DMat4, DVec3, DVec4, Vec3};
 use wgpu_shadows::{Bias, Coverage, Filter};
 
 use super::crowd::{self, Crowd};
-use super::stage::{self, Stage, frame, record_anew};
+use super::stage::{self, Stage, frame};
 use super::table::Growth;
 use crate::support::camera;
 use crate::support::configuration::filter_name;
@@ -21,26 +21,26 @@ use crate::support::textbook::meshes::{ViewUniform, WorldMeshes};
 pub fn cascades(stage: &Stage<'_>) {
     let crowd = Crowd::new(stage.gpu, 2_000);
     let list = crowd.list();
-    let camera = stage::to_the_horizon(crowd::half_side(2_000));
+    let cameras = [stage::to_the_horizon(crowd::half_side(2_000))];
     let mut table = Growth::new(
         "sun, 1024 texels a side, 2000 casters: a frame against cascades (device time as a ratio to one cascade)",
         &["cascades", "CPU µs", "allocs", "draws", "device ratio"],
     );
-    let frame = frame(&list, Coverage::Camera(camera));
+    let frame = frame(&list, Coverage::Cameras(&cameras));
     let mut single = stage.sun(1024, 1, Filter::default());
     for count in 1..=8 {
-        let mut shadow = stage.sun(1024, count, Filter::default());
-        let effort = stage.record_effort(&mut shadow, &frame, true);
+        let mut sun = stage.sun(1024, count, Filter::default());
+        let effort = stage.record_effort(&mut sun, &frame, true);
         let ratio = stage.ratio(
-            |encoder| record_anew(stage.gpu, &mut shadow, encoder, &frame),
-            |encoder| record_anew(stage.gpu, &mut single, encoder, &frame),
+            |encoder| sun.record_anew(encoder, &frame),
+            |encoder| single.record_anew(encoder, &frame),
         );
         table.add(
             f64::from(count),
             [
                 effort.microseconds,
                 effort.allocations,
-                f64::from(shadow.report().draws()),
+                f64::from(sun.shadow.report().draws()),
                 ratio.median,
             ],
         );
@@ -66,15 +66,13 @@ pub fn map_sizes(stage: &Stage<'_>, largest: u32) {
         .max_texture_dimension_2d
         .min(largest);
     for size in sizes.take_while(|&size| size <= limit) {
-        let mut shadow = stage.sun(size, 1, Filter::default());
+        let mut sun = stage.sun(size, 1, Filter::default());
         let ratio = stage.ratio(
-            |encoder| record_anew(stage.gpu, &mut shadow, encoder, &frame),
-            |encoder| record_anew(stage.gpu, &mut smallest, encoder, &frame),
+            |encoder| sun.record_anew(encoder, &frame),
+            |encoder| smallest.record_anew(encoder, &frame),
         );
-        table.add(
-            f64::from(size),
-            [ratio.median, shadow.report().bytes_held as f64],
-        );
+        let bytes_held = sun.shadow.report().bytes_held;
+        table.add(f64::from(size), [ratio.median, bytes_held as f64]);
     }
     table.print();
 }
@@ -147,14 +145,14 @@ pub fn bare_minimum(stage: &Stage<'_>) {
     for count in [100, 1_000, 10_000] {
         let crowd = Crowd::new(stage.gpu, count);
         let list = crowd.list();
-        let mut shadow = stage.sun(2048, 1, Filter::default());
+        let mut sun = stage.sun(2048, 1, Filter::default());
         let frame = frame(&list, Coverage::Bounds(crowd.bounds()));
         stage.gpu.submit({
             let mut encoder = stage.gpu.encoder();
-            record_anew(stage.gpu, &mut shadow, &mut encoder, &frame);
+            sun.record_anew(&mut encoder, &frame);
             encoder
         });
-        let view = shadow.views().next().expect("boxes cast");
+        let view = sun.shadow.views().next().expect("boxes cast");
         // The bare pass clears to 1 and keeps the least depth: the same picture with its depth turned around.
         let turned = DMat4::from_cols(
             DVec4::X,
@@ -178,7 +176,7 @@ pub fn bare_minimum(stage: &Stage<'_>) {
         ];
         for (name, meshes) in bare {
             let ratio = stage.ratio(
-                |encoder| record_anew(stage.gpu, &mut shadow, encoder, &frame),
+                |encoder| sun.record_anew(encoder, &frame),
                 |encoder| drawer.draw(encoder, &meshes),
             );
             println!(

@@ -4,9 +4,9 @@ use std::time::Instant;
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, CasterPipeline, CasterPipelineDescriptor, MeshCaster, MeshCasterDescriptor, MeshIndices,
-    OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor, Revision, ShadowCaster, ShadowReport,
-    ShadowView,
+    Aabb, CasterPipeline, CasterPipelineDescriptor, Coverage, MeshCaster, MeshCasterDescriptor,
+    MeshIndices, OmniLight, OmniShadow, OmniShadowDescriptor, Revision, ShadowCaster,
+    ShadowFrameDescriptor, ShadowReport, ShadowScene, ShadowView,
 };
 
 use super::stage::Stage;
@@ -22,7 +22,7 @@ const MAP_SIZE: u32 = 32;
 /// few triangles and with many.
 pub fn in_one_pass(stage: &Stage<'_>) {
     println!(
-        "\npoint light: one pass for all faces beside a pass each (ratio of the times of record, submission and \
+        "\npoint light: one pass for all faces beside a pass each (ratio of the times of frame, record, submission and \
          completion; triangles of one pass for each draw call saved)"
     );
     println!(
@@ -95,6 +95,7 @@ enum Telling {
 
 /// A point light and what stands around it.
 struct Lamp {
+    scene: ShadowScene,
     shadow: OmniShadow,
     things: Vec<Thing>,
 }
@@ -130,6 +131,7 @@ impl Lamp {
             ..Default::default()
         };
         Self {
+            scene: ShadowScene::new(),
             shadow: OmniShadow::new(&gpu.device, &descriptor).expect("a valid light"),
             things: things.collect(),
         }
@@ -145,19 +147,19 @@ impl Lamp {
         let start = Instant::now();
         let mut encoder = gpu.encoder();
         self.shadow.invalidate();
-        let frame = OmniFrame {
+        let frame = self.scene.frame(&ShadowFrameDescriptor {
             origin: DVec3::ZERO,
-            light: OmniLight {
-                position_world: DVec3::ZERO,
-                range: 30.0,
-            },
-            camera: None,
+            coverage: Coverage::Everything,
             casters: &list,
             receivers: &[Aabb::new(Vec3::splat(-15.0), Vec3::splat(15.0))],
+        });
+        let frame = frame.expect("a valid frame");
+        let light = OmniLight {
+            position_world: DVec3::ZERO,
+            range: 30.0,
         };
-        self.shadow
-            .record(&gpu.device, &mut encoder, &frame)
-            .expect("a valid frame");
+        let recorded = self.shadow.record(&mut encoder, &frame, &light);
+        recorded.expect("a valid light");
         gpu.submit(encoder);
         start.elapsed().as_secs_f64()
     }
@@ -202,6 +204,10 @@ impl ShadowCaster for Thing {
 
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &ShadowView) {
         self.mesh.draw(pass, view);
+    }
+
+    fn keeps_pass_state(&self) -> bool {
+        true
     }
 
     fn same_in_every_view(&self) -> bool {

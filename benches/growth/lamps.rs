@@ -1,50 +1,71 @@
 //! A field of point lights over a crowd.
 
 use glam::DVec3;
-use wgpu_shadows::{OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowCaster};
+use wgpu_shadows::{
+    Coverage, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowCaster, ShadowScene,
+};
 
 use super::counts::Counts;
+use super::stage;
 use crate::support::gpu::Gpu;
 
 /// The golden angle in radians: successive lamps on a spiral keep their distance.
 const TURN: f64 = 2.399_963;
 
-/// Shadows of `count` lamps, 256 texels a side of each face.
-pub fn make(gpu: &Gpu, count: u32) -> Vec<OmniShadow> {
-    let descriptor = OmniShadowDescriptor {
-        map_size: 256,
-        ..Default::default()
-    };
-    (0..count)
-        .map(|_| OmniShadow::new(&gpu.device, &descriptor).expect("a valid light"))
-        .collect()
+/// Shadows of many lamps, with a scene that they share and that is kept from frame to frame.
+pub struct Lamps {
+    scene: ShadowScene,
+    shadows: Vec<OmniShadow>,
 }
 
-/// Records a frame of lamps spread over a square of ground of half the side `half`, and tells what it took.
-pub fn record(
-    gpu: &Gpu,
-    encoder: &mut wgpu::CommandEncoder,
-    lamps: &mut [OmniShadow],
-    casters: &[&dyn ShadowCaster],
-    half: f32,
-) -> Counts {
-    let count = lamps.len() as f64;
-    let mut counts = Counts::default();
-    for (index, lamp) in (0..).map(f64::from).zip(lamps) {
-        let (sin, cos) = (TURN * index).sin_cos();
-        let radius = f64::from(half) * (index / count).sqrt();
-        let frame = OmniFrame {
-            origin: DVec3::ZERO,
-            light: OmniLight {
+impl Lamps {
+    /// `count` lamps, 256 texels a side of each face.
+    pub fn new(gpu: &Gpu, count: u32) -> Self {
+        let descriptor = OmniShadowDescriptor {
+            map_size: 256,
+            ..Default::default()
+        };
+        let shadow = || OmniShadow::new(&gpu.device, &descriptor).expect("valid shadows");
+        Self {
+            scene: ShadowScene::new(),
+            shadows: (0..count).map(|_| shadow()).collect(),
+        }
+    }
+
+    /// Makes one frame for all lamps, spread over a square of ground of half the side `half`, records it, and tells what it took.
+    pub fn record(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        casters: &[&dyn ShadowCaster],
+        half: f32,
+    ) -> Counts {
+        let frame = self
+            .scene
+            .frame(&stage::frame(casters, Coverage::Everything))
+            .expect("a valid frame");
+        let count = self.shadows.len() as f64;
+        let mut counts = Counts::default();
+        for (index, shadow) in (0..).map(f64::from).zip(&mut self.shadows) {
+            let (sin, cos) = (TURN * index).sin_cos();
+            let radius = f64::from(half) * (index / count).sqrt();
+            let light = OmniLight {
                 position_world: DVec3::new(radius * cos, 4.0, radius * sin),
                 range: 10.0,
-            },
-            camera: None,
-            casters,
-            receivers: &[],
-        };
-        let report = lamp.record(&gpu.device, encoder, &frame);
-        counts.add(report.expect("a valid frame"));
+            };
+            let report = shadow.record(encoder, &frame, &light);
+            counts.add(report.expect("a valid light"));
+        }
+        counts
     }
-    counts
+
+    /// The same with every view drawn.
+    pub fn record_anew(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        casters: &[&dyn ShadowCaster],
+        half: f32,
+    ) -> Counts {
+        self.shadows.iter_mut().for_each(OmniShadow::invalidate);
+        self.record(encoder, casters, half)
+    }
 }

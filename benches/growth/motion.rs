@@ -4,13 +4,13 @@
 //! of their own, its still part, where copying that costs less than drawing them.
 
 use glam::Vec3;
-use wgpu_shadows::{Coverage, DirectionalShadow, Filter, OmniShadow, ShadowCaster};
+use wgpu_shadows::{Coverage, Filter, ShadowCaster};
 
 use super::counts::Counts;
 use super::crowd::{self, Crowd};
-use super::lamps;
+use super::lamps::Lamps;
 use super::processor;
-use super::stage::{self, Stage};
+use super::stage::{self, Stage, Sun};
 use super::table::Growth;
 
 const CASTERS: u32 = 2_000;
@@ -22,10 +22,9 @@ const SHARES: [u32; 6] = [0, 1, 3, 10, 30, 100];
 
 /// Shadows of some lights over a crowd.
 trait Lit {
-    /// Records a frame, and tells what it took.
-    fn record(
+    /// Makes and records a frame, and tells what it took.
+    fn record_frame(
         &mut self,
-        stage: &Stage<'_>,
         encoder: &mut wgpu::CommandEncoder,
         casters: &[&dyn ShadowCaster],
     ) -> Counts;
@@ -34,26 +33,23 @@ trait Lit {
     fn settle(&mut self, stage: &Stage<'_>, casters: &[&dyn ShadowCaster]) {
         for _ in 0..SETTLING {
             let mut encoder = stage.gpu.encoder();
-            self.record(stage, &mut encoder, casters);
+            self.record_frame(&mut encoder, casters);
             stage.gpu.submit(encoder);
         }
     }
 }
-
-struct Sun(DirectionalShadow);
-struct Lamps(Vec<OmniShadow>);
 
 /// A sun and a field of lamps, while more and more of the crowd around the middle moves.
 pub fn moving_share(stage: &Stage<'_>) {
     measure(
         stage,
         "sun, four cascades of 1024 texels a side, 2000 casters: a frame against the share that moves, around the middle",
-        || Sun(stage.sun(1024, 4, Filter::default())),
+        || stage.sun(1024, 4, Filter::default()),
     );
     measure(
         stage,
         "32 point lights of 256 texels a side, 2000 casters: a frame against the share that moves, around the middle",
-        || Lamps(lamps::make(stage.gpu, LAMPS)),
+        || Lamps::new(stage.gpu, LAMPS),
     );
 }
 
@@ -82,14 +78,14 @@ fn measure<L: Lit>(stage: &Stage<'_>, title: &str, make: impl Fn() -> L) {
         let effort = processor::measure(
             stage.repeats,
             || stage.gpu.encoder(),
-            |encoder| counts = lit.record(stage, encoder, &casters),
+            |encoder| counts = lit.record_frame(encoder, &casters),
         );
         let ratio = stage.ratio(
             |encoder| {
-                lit.record(stage, encoder, &casters);
+                lit.record_frame(encoder, &casters);
             },
             |encoder| {
-                all_lit.record(stage, encoder, &all_move);
+                all_lit.record_frame(encoder, &all_move);
             },
         );
         table.add(
@@ -114,30 +110,27 @@ fn crowd_with(stage: &Stage<'_>, moving_percent: u32) -> Crowd {
 }
 
 impl Lit for Sun {
-    fn record(
+    fn record_frame(
         &mut self,
-        stage: &Stage<'_>,
         encoder: &mut wgpu::CommandEncoder,
         casters: &[&dyn ShadowCaster],
     ) -> Counts {
         let camera = stage::to_the_horizon(crowd::half_side(CASTERS));
-        let frame = stage::frame(casters, Coverage::Camera(camera));
-        let report = self.0.record(&stage.gpu.device, encoder, &frame);
+        let cameras = [camera];
+        let frame = stage::frame(casters, Coverage::Cameras(&cameras));
         let mut counts = Counts::default();
-        counts.add(report.expect("a valid frame"));
+        counts.add(self.record(encoder, &frame));
         counts
     }
 }
 
 impl Lit for Lamps {
-    fn record(
+    fn record_frame(
         &mut self,
-        stage: &Stage<'_>,
         encoder: &mut wgpu::CommandEncoder,
         casters: &[&dyn ShadowCaster],
     ) -> Counts {
-        let half = crowd::half_side(CASTERS);
-        lamps::record(stage.gpu, encoder, &mut self.0, casters, half)
+        self.record(encoder, casters, crowd::half_side(CASTERS))
     }
 }
 
@@ -158,8 +151,7 @@ pub fn still_part(stage: &Stage<'_>) {
             let sun = || stage.sun(map_size, 1, Filter::default());
             let (mut settled, mut anew) = (sun(), sun());
             let mut record = |encoder: &mut wgpu::CommandEncoder| {
-                let report = settled.record(&stage.gpu.device, encoder, &frame);
-                report.expect("a valid frame");
+                settled.record(encoder, &frame);
             };
             for _ in 0..SETTLING {
                 let mut encoder = stage.gpu.encoder();
@@ -167,7 +159,7 @@ pub fn still_part(stage: &Stage<'_>) {
                 stage.gpu.submit(encoder);
             }
             let ratio = stage.ratio(record, |encoder| {
-                stage::record_anew(stage.gpu, &mut anew, encoder, &frame);
+                anew.record_anew(encoder, &frame);
             });
             ratio.median
         });

@@ -2,8 +2,8 @@
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
-    CameraView, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, Filter, ShadowCaster,
+    CameraView, Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter,
+    ShadowCaster, ShadowFrameDescriptor, ShadowReport, ShadowScene,
 };
 
 use super::clock::Clock;
@@ -20,41 +20,71 @@ pub struct Stage<'a> {
 }
 
 /// The sun of all measurements.
-pub const SUN: DirectionalLight = DirectionalLight::new(Vec3::new(-0.5, -1.0, -0.3));
+const SUN: DirectionalLight = DirectionalLight::new(Vec3::new(-0.5, -1.0, -0.3));
+
+/// Its shadows, with a scene that is kept from frame to frame.
+pub struct Sun {
+    scene: ShadowScene,
+    pub shadow: DirectionalShadow,
+}
+
+impl Sun {
+    /// Makes a frame and records it.
+    pub fn record(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        frame: &ShadowFrameDescriptor<'_, '_>,
+    ) -> &ShadowReport {
+        let frame = self.scene.frame(frame).expect("a valid frame");
+        let report = self.shadow.record(encoder, &frame, &SUN);
+        report.expect("a valid light")
+    }
+
+    /// The same with every view drawn.
+    pub fn record_anew(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        frame: &ShadowFrameDescriptor<'_, '_>,
+    ) {
+        self.shadow.invalidate();
+        self.record(encoder, frame);
+    }
+}
 
 impl Stage<'_> {
-    /// A sun's shadows.
-    pub fn sun(&self, map_size: u32, cascades: u32, filter: Filter) -> DirectionalShadow {
+    /// The sun's shadows.
+    pub fn sun(&self, map_size: u32, cascades: u32, filter: Filter) -> Sun {
         let descriptor = DirectionalShadowDescriptor {
             map_size,
             cascades,
             filter,
             ..Default::default()
         };
-        DirectionalShadow::new(&self.gpu.device, &descriptor).expect("a valid light")
+        let shadow = DirectionalShadow::new(&self.gpu.device, &descriptor);
+        Sun {
+            scene: ShadowScene::new(),
+            shadow: shadow.expect("valid shadows"),
+        }
     }
 
-    /// `record` on the CPU, in an encoder that is then thrown away; of a frame that changed, or of one that did not.
+    /// `frame` and `record` on the CPU, in an encoder that is then thrown away; of a frame that changed, or of one that did not.
     pub fn record_effort(
         &self,
-        shadow: &mut DirectionalShadow,
-        frame: &DirectionalFrame<'_>,
+        sun: &mut Sun,
+        frame: &ShadowFrameDescriptor<'_, '_>,
         changed: bool,
     ) -> processor::Effort {
         let mut first = self.gpu.encoder();
-        record_anew(self.gpu, shadow, &mut first, frame);
+        sun.record_anew(&mut first, frame);
         self.gpu.submit(first);
         processor::measure(
             self.repeats,
             || self.gpu.encoder(),
             |encoder| {
                 if changed {
-                    shadow.invalidate();
+                    sun.shadow.invalidate();
                 }
-                shadow
-                    .record(&self.gpu.device, encoder, frame)
-                    .map(|report| report.passes)
-                    .expect("a valid frame")
+                sun.record(encoder, frame).passes
             },
         )
     }
@@ -75,24 +105,13 @@ impl Stage<'_> {
     }
 }
 
-/// Records a frame with every view drawn.
-pub fn record_anew(
-    gpu: &Gpu,
-    shadow: &mut DirectionalShadow,
-    encoder: &mut wgpu::CommandEncoder,
-    frame: &DirectionalFrame<'_>,
-) {
-    shadow.invalidate();
-    shadow
-        .record(&gpu.device, encoder, frame)
-        .expect("a valid frame");
-}
-
-/// A frame of [`SUN`].
-pub fn frame<'a>(casters: &'a [&'a dyn ShadowCaster], coverage: Coverage) -> DirectionalFrame<'a> {
-    DirectionalFrame {
+/// What a frame brings.
+pub fn frame<'d, 'c>(
+    casters: &'c [&'c dyn ShadowCaster],
+    coverage: Coverage<'d>,
+) -> ShadowFrameDescriptor<'d, 'c> {
+    ShadowFrameDescriptor {
         origin: DVec3::ZERO,
-        light: SUN,
         coverage,
         casters,
         receivers: &[],

@@ -3,12 +3,11 @@
 use std::error::Error;
 
 use wgpu_shadows::{
-    Bias, CasterPipeline, CasterPipelineDescriptor, CasterVertex, Coverage, DirectionalFrame,
-    DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter, MeshCaster,
-    MeshCasterDescriptor, MeshIndices, ModelTransform, OmniFrame, OmniLight, OmniShadow,
-    OmniShadowDescriptor, PositionAttribute, ShadowBindings, ShadowBindingsDescriptor,
-    ShadowCaster, ShadowError, ShadowReport, SpotFrame, SpotLight, SpotShadow,
-    SpotShadowDescriptor, ViewStatus,
+    Bias, CasterPipeline, CasterPipelineDescriptor, CasterVertex, Coverage, DirectionalLight,
+    DirectionalShadow, DirectionalShadowDescriptor, Filter, MeshCaster, MeshCasterDescriptor,
+    MeshIndices, ModelTransform, OmniLight, OmniShadow, OmniShadowDescriptor, PositionAttribute,
+    ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowError, ShadowFrameDescriptor,
+    ShadowReport, ShadowScene, SpotLight, SpotShadow, SpotShadowDescriptor, ViewStatus,
 };
 
 use super::gpu::Gpu;
@@ -21,7 +20,7 @@ pub struct LibraryOptions {
     pub filter: Filter,
     pub bias: Bias,
     pub map_size: u32,
-    /// Cover what the camera sees, or everything.
+    /// Cover what the camera sees, or the bounds of the scene.
     pub fits_camera: bool,
     /// Of a sun; other lights ignore it.
     pub cascades: u32,
@@ -88,6 +87,7 @@ pub struct LibraryTechnique<'a> {
     scene: &'a Scene,
     casters: Vec<&'a dyn ShadowCaster>,
     options: LibraryOptions,
+    shadow_scene: ShadowScene,
     shadow: Shadow,
     bindings: ShadowBindings,
     report: ShadowReport,
@@ -118,6 +118,7 @@ impl<'a> LibraryTechnique<'a> {
             scene,
             casters: casters.list(),
             options,
+            shadow_scene: ShadowScene::new(),
             shadow,
             bindings,
             report: ShadowReport::default(),
@@ -171,21 +172,22 @@ fn create_shadow(
 }
 
 impl Technique for LibraryTechnique<'_> {
-    fn record(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) -> Result<(), ShadowError> {
+    fn record(&mut self, _: &Gpu, encoder: &mut wgpu::CommandEncoder) -> Result<(), ShadowError> {
         let scene = self.scene;
-        let (origin, casters) = (scene.origin, &self.casters[..]);
-        let camera = self.options.fits_camera.then_some(scene.camera);
+        let frame = self.shadow_scene.frame(&ShadowFrameDescriptor {
+            origin: scene.origin,
+            coverage: if self.options.fits_camera {
+                Coverage::Cameras(std::slice::from_ref(&scene.camera))
+            } else {
+                Coverage::Bounds(scene.bounds())
+            },
+            casters: &self.casters,
+            receivers: &[],
+        })?;
         let report = match (&mut self.shadow, scene.light) {
             (Shadow::Sun(sun), Light::Sun { direction, .. }) => {
                 sun.invalidate();
-                let frame = DirectionalFrame {
-                    origin,
-                    light: DirectionalLight::new(direction),
-                    coverage: camera.map_or(Coverage::Bounds(scene.bounds()), Coverage::Camera),
-                    casters,
-                    receivers: &[],
-                };
-                sun.record(&gpu.device, encoder, &frame)
+                sun.record(encoder, &frame, &DirectionalLight::new(direction))
             }
             (
                 Shadow::Spot(spot),
@@ -198,19 +200,13 @@ impl Technique for LibraryTechnique<'_> {
                 },
             ) => {
                 spot.invalidate();
-                let frame = SpotFrame {
-                    origin,
-                    light: SpotLight {
-                        position_world,
-                        direction,
-                        outer_angle_radians,
-                        range,
-                    },
-                    camera,
-                    casters,
-                    receivers: &[],
+                let light = SpotLight {
+                    position_world,
+                    direction,
+                    outer_angle_radians,
+                    range,
                 };
-                spot.record(&gpu.device, encoder, &frame)
+                spot.record(encoder, &frame, &light)
             }
             (
                 Shadow::Point(point),
@@ -221,17 +217,11 @@ impl Technique for LibraryTechnique<'_> {
                 },
             ) => {
                 point.invalidate();
-                let frame = OmniFrame {
-                    origin,
-                    light: OmniLight {
-                        position_world,
-                        range,
-                    },
-                    camera,
-                    casters,
-                    receivers: &[],
+                let light = OmniLight {
+                    position_world,
+                    range,
                 };
-                point.record(&gpu.device, encoder, &frame)
+                point.record(encoder, &frame, &light)
             }
             _ => unreachable!("the shadow is made for the scene's light"),
         };

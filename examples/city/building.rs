@@ -48,6 +48,10 @@ impl ShadowCaster for Building {
         pass.draw(0..self.vertex_count, self.index..self.index + 1);
     }
 
+    fn keeps_pass_state(&self) -> bool {
+        true
+    }
+
     fn revision(&self) -> Revision {
         // Buildings stay as they are.
         Revision::new(u64::from(self.index), 0)

@@ -86,7 +86,7 @@ fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
     }
     let count = table.frames();
     println!(
-        "record: {:.2?} of CPU time, the median of {count} frames",
+        "frame and record: {:.2?} of CPU time, the median of {count} frames",
         table.median_record_time()
     );
 

@@ -5,9 +5,9 @@ use std::time::{Duration, Instant};
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
-    Coverage, DebugPicture, DirectionalFrame, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, ShadowBindings, ShadowBindingsDescriptor, ShadowCaster,
-    ShadowReport,
+    Coverage, DebugPicture, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowFrameDescriptor, ShadowReport,
+    ShadowScene,
 };
 
 use crate::common::camera::Camera;
@@ -42,6 +42,7 @@ pub enum Show {
 
 /// A sun that casts shadows, and the passes that ask for them.
 pub struct Sun {
+    shadow_scene: ShadowScene,
     shadow: DirectionalShadow,
     bindings: ShadowBindings,
     scene: Phong,
@@ -83,6 +84,7 @@ impl Sun {
             )
         };
         Ok(Self {
+            shadow_scene: ShadowScene::new(),
             scene: phong("fragment", FORMAT),
             cascades: phong("fragment_cascades", FORMAT),
             density: phong("fragment_density", wgpu::TextureFormat::Rgba8Unorm),
@@ -97,7 +99,7 @@ impl Sun {
         self.shadow.report()
     }
 
-    /// Time on the CPU of the last call of `record`: fit, cull, and the recording of the passes.
+    /// Time on the CPU of the last frame's shadows: checks, fit, cull, and the recording of the passes.
     pub fn record_time(&self) -> Duration {
         self.record_time
     }
@@ -112,15 +114,15 @@ impl Sun {
         show: Show,
     ) -> Result<Vec<u8>, Box<dyn Error>> {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let frame = DirectionalFrame {
+        let light = DirectionalLight::new(-TOWARD_SUN);
+        let start = Instant::now();
+        let frame = self.shadow_scene.frame(&ShadowFrameDescriptor {
             origin: DVec3::ZERO,
-            light: DirectionalLight::new(-TOWARD_SUN),
-            coverage: Coverage::Camera(camera.for_shadows()),
+            coverage: Coverage::Cameras(&[camera.for_shadows()]),
             casters,
             receivers: &[town.ground],
-        };
-        let start = Instant::now();
-        self.shadow.record(&gpu.device, &mut encoder, &frame)?;
+        })?;
+        self.shadow.record(&mut encoder, &frame, &light)?;
         self.record_time = start.elapsed();
 
         let target = gpu.target(FORMAT, DRAWN_SIZE, 1);

@@ -41,7 +41,7 @@ impl Table {
         }
         let _ = writeln!(
             rows,
-            "    {} passes, {} draws, {} MiB of maps, record {record_time:.2?}",
+            "    {} passes, {} draws, {} MiB of maps, frame and record {record_time:.2?}",
             report.passes,
             report.draws(),
             report.bytes_held >> 20,
@@ -54,7 +54,7 @@ impl Table {
         self.record_times.len()
     }
 
-    /// Median of the frames' times of `record`, the upper one of two.
+    /// Median of the frames' times on the CPU, the upper one of two.
     pub fn median_record_time(&self) -> Duration {
         let mut sorted = self.record_times.clone();
         sorted.sort();

@@ -36,6 +36,10 @@ impl ShadowCaster for SceneCaster<'_> {
         self.geometry.draw(pass, self.draw);
     }
 
+    fn keeps_pass_state(&self) -> bool {
+        true
+    }
+
     fn triangles(&self) -> u32 {
         self.draw.indices.len() as u32 / 3
     }

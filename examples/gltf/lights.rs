@@ -3,10 +3,10 @@
 use std::fmt::Write;
 
 use wgpu_shadows::{
-    Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    OmniLight, OmniShadowPool, PoolDescriptor, PoolFrame, PoolLight, ShadowBindings,
-    ShadowBindingsDescriptor, ShadowCaster, ShadowReport, ShadowSlot, ShadowSource, SpotLight,
-    SpotShadowPool,
+    Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniLight,
+    OmniShadowPool, PoolDescriptor, PoolLight, ShadowBindings, ShadowBindingsDescriptor,
+    ShadowCaster, ShadowFrameDescriptor, ShadowReport, ShadowScene, ShadowSlot, ShadowSource,
+    SpotLight, SpotShadowPool,
 };
 
 use crate::device::Gpu;
@@ -68,6 +68,7 @@ impl Maps {
 /// Lights of the scene with their shadows.
 pub struct SceneLights {
     pub lights: Vec<Light>,
+    shadow_scene: ShadowScene,
     maps: Vec<(String, Maps)>,
     pub bindings: ShadowBindings,
     /// `visibility_of_light(maps, index, position, normal)`.
@@ -125,6 +126,7 @@ impl SceneLights {
         let wgsl = visibility_of_light(&maps);
         Ok(Self {
             lights,
+            shadow_scene: ShadowScene::new(),
             maps,
             bindings,
             wgsl,
@@ -135,26 +137,27 @@ impl SceneLights {
     /// Records the depth passes of all lights.
     pub fn record(
         &mut self,
-        gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         scene: &Scene,
         casters: &[&dyn ShadowCaster],
     ) -> Result<(), String> {
         let camera = scene.camera.with_max_distance(self.max_distance);
+        let frame = self
+            .shadow_scene
+            .frame(&ShadowFrameDescriptor {
+                origin: scene.origin,
+                coverage: Coverage::Cameras(&[camera]),
+                casters,
+                receivers: &[],
+            })
+            .map_err(|error| error.to_string())?;
         let lights = &self.lights;
         for (_, maps) in &mut self.maps {
             let recorded = match maps {
-                Maps::Sun { shadow, light } => shadow.record(
-                    &gpu.device,
-                    encoder,
-                    &DirectionalFrame {
-                        origin: scene.origin,
-                        light: DirectionalLight::new(lights[*light].direction),
-                        coverage: Coverage::Camera(camera),
-                        casters,
-                        receivers: &[],
-                    },
-                ),
+                Maps::Sun { shadow, light } => {
+                    let sun = DirectionalLight::new(lights[*light].direction);
+                    shadow.record(encoder, &frame, &sun)
+                }
                 Maps::Spots { pool, slots } => {
                     let spot = |light: &Light| SpotLight {
                         position_world: scene.origin + light.position_render.as_dvec3(),
@@ -162,18 +165,14 @@ impl SceneLights {
                         outer_angle_radians: light.kind.outer_angle_radians(),
                         range: light.range,
                     };
-                    let listed = listed(slots, lights, spot);
-                    let frame = pool_frame(scene, &listed, camera, casters);
-                    pool.record(&gpu.device, encoder, &frame)
+                    pool.record(encoder, &frame, &listed(slots, lights, spot), None)
                 }
                 Maps::Lamps { pool, slots } => {
                     let lamp = |light: &Light| OmniLight {
                         position_world: scene.origin + light.position_render.as_dvec3(),
                         range: light.range,
                     };
-                    let listed = listed(slots, lights, lamp);
-                    let frame = pool_frame(scene, &listed, camera, casters);
-                    pool.record(&gpu.device, encoder, &frame)
+                    pool.record(encoder, &frame, &listed(slots, lights, lamp), None)
                 }
             };
             recorded.map_err(|error| error.to_string())?;
@@ -276,22 +275,6 @@ fn listed<L>(
             importance: 1.0,
         })
         .collect()
-}
-
-fn pool_frame<'a, L>(
-    scene: &Scene,
-    lights: &'a [PoolLight<L>],
-    camera: wgpu_shadows::CameraView,
-    casters: &'a [&'a dyn ShadowCaster],
-) -> PoolFrame<'a, L> {
-    PoolFrame {
-        origin: scene.origin,
-        lights,
-        camera: Some(camera),
-        casters,
-        receivers: &[],
-        max_views: None,
-    }
 }
 
 /// Suns one by one, spots and lamps in pools of one map size each. Names end in a letter, as WGSL wants them.

@@ -57,7 +57,7 @@ pub fn frames(
         lights.invalidate();
         times
             .shadow_passes
-            .push(timer.time(gpu, |encoder| lights.record(gpu, encoder, scene, &casters))?);
+            .push(timer.time(gpu, |encoder| lights.record(encoder, scene, &casters))?);
         times.shading_pass.push(timer.time(gpu, |encoder| {
             renderer.shade(encoder, geometry, lights);
             Ok(())

@@ -69,14 +69,7 @@ fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
         let camera = hall::camera(SIZE);
         let budget = (frame > 0).then_some(arguments.budget);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        shadows.record(
-            &gpu.device,
-            &mut encoder,
-            &lights,
-            &camera,
-            &casters,
-            budget,
-        )?;
+        shadows.record(&mut encoder, &lights, &camera, &casters, budget)?;
         let pixels = painter.draw(&gpu, encoder, &hall, &lights, &shadows, &camera)?;
         let path = arguments.folder.join(format!("frame-{frame:03}.png"));
         picture::save(&path, &pixels, SIZE)?;

@@ -4,15 +4,16 @@ use std::error::Error;
 
 use glam::DVec3;
 use wgpu_shadows::{
-    Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    OmniShadowPool, PoolDescriptor, PoolFrame, PoolLight, ShadowBindings, ShadowBindingsDescriptor,
-    ShadowCaster, ShadowReport, ShadowSlot, SpotShadowPool,
+    Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniShadowPool,
+    PoolDescriptor, PoolLight, ShadowBindings, ShadowBindingsDescriptor, ShadowCaster,
+    ShadowFrameDescriptor, ShadowReport, ShadowScene, ShadowSlot, SpotShadowPool,
 };
 
 use crate::common::camera::Camera;
 use crate::lights::{LAMPS, Lights, SPOTS, TOWARD_SUN};
 
 pub struct Shadows {
+    scene: ShadowScene,
     sun: DirectionalShadow,
     spots: SpotShadowPool,
     spot_slots: Vec<ShadowSlot>,
@@ -58,6 +59,7 @@ impl Shadows {
             },
         )?;
         Ok(Self {
+            scene: ShadowScene::new(),
             sun,
             spots,
             spot_slots,
@@ -76,22 +78,20 @@ impl Shadows {
     /// Depth passes of what has changed; of the lamps no more than `budget` views.
     pub fn record(
         &mut self,
-        device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
         lights: &Lights,
         camera: &Camera,
         casters: &[&dyn ShadowCaster],
         budget: Option<u32>,
     ) -> Result<(), Box<dyn Error>> {
-        let view = camera.for_shadows();
-        let frame = DirectionalFrame {
+        let frame = self.scene.frame(&ShadowFrameDescriptor {
             origin: DVec3::ZERO,
-            light: DirectionalLight::new(-TOWARD_SUN),
-            coverage: Coverage::Camera(view),
+            coverage: Coverage::Cameras(&[camera.for_shadows()]),
             casters,
             receivers: &[],
-        };
-        self.sun.record(device, encoder, &frame)?;
+        })?;
+        let sun = DirectionalLight::new(-TOWARD_SUN);
+        self.sun.record(encoder, &frame, &sun)?;
 
         let spots: Vec<_> = self
             .spot_slots
@@ -103,15 +103,7 @@ impl Shadows {
                 importance: 1.0,
             })
             .collect();
-        let frame = PoolFrame {
-            origin: DVec3::ZERO,
-            lights: &spots,
-            camera: Some(view),
-            casters,
-            receivers: &[],
-            max_views: None,
-        };
-        self.spots.record(device, encoder, &frame)?;
+        self.spots.record(encoder, &frame, &spots, None)?;
 
         let lamps: Vec<_> = self
             .lamp_slots
@@ -124,15 +116,8 @@ impl Shadows {
                 importance: camera.eye.distance(lamp.place).max(1.0).recip(),
             })
             .collect();
-        let frame = PoolFrame {
-            origin: DVec3::ZERO,
-            lights: &lamps,
-            camera: Some(view),
-            casters,
-            receivers: &[],
-            max_views: budget,
-        };
-        self.lamps.record(device, encoder, &frame)?;
+        self.lamps.record(encoder, &frame, &lamps, budget)?;
+
         self.moving_spots = lights.spots.iter().map(|spot| spot.moves).collect();
         self.moving_lamps = lights.lamps.iter().map(|lamp| lamp.moves).collect();
         Ok(())

@@ -4,8 +4,9 @@ use std::error::Error;
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
-    CameraView, DebugPicture, Filter, OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor,
-    ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowError, ShadowReport,
+    Coverage, DebugPicture, Filter, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowBindings,
+    ShadowBindingsDescriptor, ShadowCaster, ShadowError, ShadowFrameDescriptor, ShadowReport,
+    ShadowScene,
 };
 
 use crate::SIZE;
@@ -24,6 +25,7 @@ const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
 /// A lamp that casts shadows, and the pass that asks for them.
 pub struct Lamp {
+    shadow_scene: ShadowScene,
     shadow: OmniShadow,
     bindings: ShadowBindings,
     phong: Phong,
@@ -60,6 +62,7 @@ impl Lamp {
             },
         );
         Ok(Self {
+            shadow_scene: ShadowScene::new(),
             shadow,
             bindings,
             phong,
@@ -81,8 +84,9 @@ impl Lamp {
     ) -> Result<Vec<u8>, Box<dyn Error>> {
         let camera = room::camera(SIZE);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let view = Some(camera.for_shadows());
-        self.record(gpu, &mut encoder, room, place, view, casters)?;
+        let cameras = [camera.for_shadows()];
+        let seen = Coverage::Cameras(&cameras);
+        self.record(&mut encoder, room, place, seen, casters)?;
 
         let lighting = Lighting {
             light: place.extend(1.0),
@@ -116,7 +120,7 @@ impl Lamp {
         casters: &[&dyn ShadowCaster],
     ) -> Result<(), ShadowError> {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        self.record(gpu, &mut encoder, room, place, None, casters)?;
+        self.record(&mut encoder, room, place, Coverage::Everything, casters)?;
         gpu.queue.submit([encoder.finish()]);
         Ok(())
     }
@@ -134,23 +138,23 @@ impl Lamp {
 
     fn record(
         &mut self,
-        gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         room: &Room,
         place: Vec3,
-        camera: Option<CameraView>,
+        coverage: Coverage<'_>,
         casters: &[&dyn ShadowCaster],
     ) -> Result<(), ShadowError> {
-        let frame = OmniFrame {
+        let frame = self.shadow_scene.frame(&ShadowFrameDescriptor {
             origin: DVec3::ZERO,
-            light: OmniLight {
-                position_world: place.as_dvec3(),
-                range: RANGE,
-            },
-            camera,
+            coverage,
             casters,
             receivers: &room.walls(),
+        })?;
+        let light = OmniLight {
+            position_world: place.as_dvec3(),
+            range: RANGE,
         };
-        self.shadow.record(&gpu.device, encoder, &frame).map(|_| ())
+        self.shadow.record(encoder, &frame, &light)?;
+        Ok(())
     }
 }

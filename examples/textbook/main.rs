@@ -31,7 +31,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
-use wgpu_shadows::{DebugPicture, DirectionalShadow, ShadowCaster};
+use glam::DVec3;
+use wgpu_shadows::{
+    DebugPicture, DirectionalShadow, ShadowCaster, ShadowFrameDescriptor, ShadowScene,
+};
 
 use common::gpu::Gpu;
 use common::{arguments, map_picture, picture};
@@ -77,12 +80,15 @@ fn draw(gpu: &Gpu, scene: &Scene, step: &Step, path: &Path) -> Result<String, Bo
     let meshes = scene.casters(&gpu.device, step.cull)?;
     let casters: Vec<&dyn ShadowCaster> = meshes.iter().map(|mesh| mesh as _).collect();
     let mut sun = DirectionalShadow::new(&gpu.device, &step.shadow)?;
+    let mut shadow_scene = ShadowScene::new();
+    let frame = shadow_scene.frame(&ShadowFrameDescriptor {
+        origin: DVec3::ZERO,
+        coverage: step.region.coverage(&[camera.for_shadows()]),
+        casters: &casters,
+        receivers: &[],
+    })?;
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    sun.record(
-        &gpu.device,
-        &mut encoder,
-        &scene.frame(step.region, &camera, &casters),
-    )?;
+    sun.record(&mut encoder, &frame, &scene.sun())?;
 
     let lookup = match step.show {
         Show::Scene => Lookup::by_the_library(&gpu.device, &sun)?,

@@ -1,13 +1,12 @@
 //! The tutorial's scene: a floor of 50 by 50, three cubes, and a sun that shines from (-2, 4, -1) to the origin.
 
-use glam::{DVec3, Mat4, Quat, Vec3};
+use glam::{Mat4, Quat, Vec3};
 use wgpu_shadows::{
-    Aabb, CasterError, CasterPipeline, CasterPipelineDescriptor, CasterVertex, Coverage,
-    DirectionalFrame, DirectionalLight, MeshCaster, MeshCasterDescriptor, MeshIndices,
-    ModelTransform, PositionAttribute, ShadowCaster,
+    Aabb, CameraView, CasterError, CasterPipeline, CasterPipelineDescriptor, CasterVertex,
+    Coverage, DirectionalLight, MeshCaster, MeshCasterDescriptor, MeshIndices, ModelTransform,
+    PositionAttribute,
 };
 
-use crate::common::camera::Camera;
 use crate::common::mesh::{Instance, Object, Vertex, cube, square};
 
 /// What a step's map covers.
@@ -17,6 +16,16 @@ pub enum MapRegion {
     FixedBox,
     /// What the camera sees of the shadows.
     Camera,
+}
+
+impl MapRegion {
+    /// The region as the library takes it.
+    pub fn coverage(self, cameras: &[CameraView]) -> Coverage<'_> {
+        match self {
+            Self::FixedBox => Coverage::Bounds(FIXED_BOX),
+            Self::Camera => Coverage::Cameras(cameras),
+        }
+    }
 }
 
 /// The fixed box. It reaches below the floor, so that the floor is drawn into the map, and a little beyond the cubes' shadows:
@@ -108,22 +117,8 @@ impl Scene {
             .collect()
     }
 
-    /// What the library asks of a frame.
-    pub fn frame<'a>(
-        &self,
-        region: MapRegion,
-        camera: &Camera,
-        casters: &'a [&'a dyn ShadowCaster],
-    ) -> DirectionalFrame<'a> {
-        DirectionalFrame {
-            origin: DVec3::ZERO,
-            light: DirectionalLight::new(-self.toward_light),
-            coverage: match region {
-                MapRegion::FixedBox => Coverage::Bounds(FIXED_BOX),
-                MapRegion::Camera => Coverage::Camera(camera.for_shadows()),
-            },
-            casters,
-            receivers: &[],
-        }
+    /// The sun as the library takes it.
+    pub fn sun(&self) -> DirectionalLight {
+        DirectionalLight::new(-self.toward_light)
     }
 }

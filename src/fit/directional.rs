@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::fit::axes::{LightAxes, LightBox};
 use crate::fit::camera::CameraFrustum;
-use crate::fit::column::push_column;
+use crate::fit::column::{Column, push_column};
 use crate::fit::footprint::{FootprintScratch, Slice, SliceReport};
 use crate::fit::region::HalfSpaces;
 use crate::fit::spacing::Spacing;
@@ -51,15 +51,15 @@ pub(crate) struct FitLimits {
 
 /// A caster as the fit sees it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct CasterBounds {
-    pub light: LightBox,
+struct CasterBounds {
+    light: LightBox,
     /// False where no visible receiver lies behind the caster: a ground plane below everything shadows nothing.
-    pub can_shadow: bool,
+    can_shadow: bool,
 }
 
 impl CasterBounds {
     /// Light-space box of the caster with all that rounding may have taken from it: what a decision against it must miss.
-    pub fn widest_light(&self, spacing: Spacing) -> LightBox {
+    fn widest_light(&self, spacing: Spacing) -> LightBox {
         spacing.widest(&self.light)
     }
 }
@@ -78,7 +78,7 @@ pub(crate) struct DirectionalFit {
 #[derive(Debug, Default)]
 pub(crate) struct FitScratch {
     /// One entry per caster, in order.
-    pub casters: Vec<CasterBounds>,
+    casters: Vec<CasterBounds>,
     seen: Vec<Seen>,
     footprint: FootprintScratch,
 }
@@ -127,6 +127,28 @@ impl DirectionalFit {
             });
         }
         Ok(next)
+    }
+
+    /// Returns the window of a cascade that something casts into, and adds its casters to `drawn`: those of which some part lies
+    /// over the window, on the way from its receivers to the light. `scratch` is that of the fit.
+    pub fn cull(
+        &self,
+        cascade: usize,
+        input: &FitInput<'_>,
+        scratch: &FitScratch,
+        drawn: &mut Vec<u32>,
+    ) -> Option<&OrthoWindow> {
+        let window = self.windows[cascade].as_ref()?;
+        let spacing = Spacing::around(input.origin, &window.bounds());
+        let column = Column::new(&input.axes, input.origin, &window.plane);
+        let all = (0u32..).zip(scratch.casters.iter().zip(input.casters));
+        drawn.extend(all.filter_map(|(index, (caster, bounds))| {
+            let marks = caster.can_shadow
+                && window.holds_part_of(&caster.widest_light(spacing))
+                && column.meets(bounds);
+            marks.then_some(index)
+        }));
+        Some(window)
     }
 }
 

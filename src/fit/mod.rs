@@ -41,7 +41,6 @@ pub use axes::LightAxes;
 pub(crate) use axes::LightBox;
 pub(crate) use camera::CameraFrustum;
 pub use camera::CameraView;
-pub(crate) use column::Column;
 pub(crate) use directional::{
     DirectionalFit, FitInput, FitLimits, FitScratch, MAX_CASCADES, Region,
 };
@@ -50,7 +49,6 @@ pub(crate) use local::{LocalFit, MAX_LOCAL_VIEWS};
 pub(crate) use local_input::LocalInput;
 pub(crate) use reached::Reached;
 pub(crate) use region::HalfSpaces;
-pub(crate) use spacing::Spacing;
 pub use split::CascadeSplit;
 pub use stability::Stability;
 pub use view::ShadowView;

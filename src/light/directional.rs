@@ -1,12 +1,11 @@
 //! `DirectionalShadow`: the sun.
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
-use crate::cast::{FrameCasters, ViewDraws};
+use crate::cast::ViewDraws;
 use crate::check;
 use crate::fit::{
-    Column, DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, MAX_CASCADES, Region,
-    Spacing,
+    DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, MAX_CASCADES, Region,
 };
 use crate::light::layer_limits::check_layers;
 use crate::light::maps::{
@@ -218,7 +217,7 @@ impl DirectionalShadow {
             receivers: frame.receivers,
         };
         let fit = self.fit.fit(&input, &self.limits, &mut self.scratch)?;
-        let views = self.cull(&fit, &axes, frame.origin, &frame.casters)?;
+        let views = self.drawn_views(&fit, &input)?;
         let layers: [_; MAX_CASCADES] =
             std::array::from_fn(|layer| LayerBase::directional(layer as u32, fit.slices[layer]));
         let maps_frame = MapsFrame {
@@ -249,30 +248,21 @@ impl DirectionalShadow {
         Ok(())
     }
 
-    /// The cascades that something casts into, with the casters of each.
-    fn cull(
+    /// Returns the cascades that something casts into, with the casters of each.
+    fn drawn_views(
         &mut self,
         fit: &DirectionalFit,
-        axes: &LightAxes,
-        origin: DVec3,
-        casters: &FrameCasters<'_>,
+        input: &FitInput<'_>,
     ) -> Result<Vec<ViewDraws>, ShadowError> {
-        let windows = &fit.windows[..self.limits.cascades];
         let mut views = self.maps.spare_views();
-        for (layer, window) in windows.iter().enumerate() {
-            let Some(window) = window else { continue };
-            let spacing = Spacing::around(origin, &window.bounds());
-            let column = Column::new(axes, origin, &window.plane);
+        for cascade in 0..self.limits.cascades {
             let mut drawn = self.maps.spare_list();
-            let all = (0u32..).zip(self.scratch.casters.iter().zip(casters.bounds));
-            drawn.extend(all.filter_map(|(index, (caster, bounds))| {
-                let marks = caster.can_shadow
-                    && window.holds_part_of(&caster.widest_light(spacing))
-                    && column.meets(bounds);
-                marks.then_some(index)
-            }));
-            let view = ShadowView::orthographic(axes, window, origin, layer as u32).checked()?;
-            views.push(ViewDraws::new(view, drawn));
+            let Some(window) = fit.cull(cascade, input, &self.scratch, &mut drawn) else {
+                self.maps.return_list(drawn);
+                continue;
+            };
+            let view = ShadowView::orthographic(&input.axes, window, input.origin, cascade as u32);
+            views.push(ViewDraws::new(view.checked()?, drawn));
         }
         Ok(views)
     }
