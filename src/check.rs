@@ -4,7 +4,7 @@ use std::fmt::Display;
 
 use glam::DVec3;
 
-use crate::{Aabb, Bias, CascadeSplit, Filter, ShadowError};
+use crate::{Aabb, ShadowError};
 
 pub(crate) fn in_range(
     field: &'static str,
@@ -63,80 +63,4 @@ pub(crate) fn receiver_bounds(field: &'static str, list: &[Aabb]) -> Result<(), 
     list.iter()
         .enumerate()
         .try_for_each(|(index, item)| bounds(field, index, item))
-}
-
-/// A filter that a light with a single map plane at a time can use.
-pub(crate) fn planar_filter(field: &'static str, planar: Filter) -> Result<(), ShadowError> {
-    in_range(
-        field,
-        "a filter for all kinds of light (direction-space filters are for point lights)",
-        planar.directions().is_none(),
-        format_args!("{planar:?}"),
-    )?;
-    filter(field, planar)
-}
-
-pub(crate) fn filter(field: &'static str, filter: Filter) -> Result<(), ShadowError> {
-    if filter.directions().is_some() {
-        let radius = filter.radius_world();
-        return in_range(
-            field,
-            "of a finite radius above 0",
-            radius > 0.0 && radius.is_finite(),
-            radius,
-        );
-    }
-    if let Filter::Penumbra { light_size } | Filter::PenumbraTurned { light_size } = filter {
-        return in_range(
-            field,
-            "of a finite light size above 0",
-            light_size > 0.0 && light_size.is_finite(),
-            light_size,
-        );
-    }
-    let sharpness = filter.sharpness();
-    in_range(
-        field,
-        "of a finite sharpness of at least 1",
-        sharpness >= 1.0 && sharpness.is_finite(),
-        sharpness,
-    )
-}
-
-pub(crate) fn bias(field: &'static str, bias: Bias) -> Result<(), ShadowError> {
-    let (constant, slope) = bias.manual();
-    let valid = |value: f32| value >= 0.0 && value.is_finite();
-    in_range(
-        field,
-        "of finite constant and slope of at least 0",
-        valid(constant) && valid(slope),
-        format_args!("constant {constant}, slope {slope}"),
-    )
-}
-
-pub(crate) fn split(
-    field: &'static str,
-    split: CascadeSplit,
-    cascades: u32,
-) -> Result<(), ShadowError> {
-    let lambda = match split {
-        CascadeSplit::Practical { lambda } => lambda,
-        CascadeSplit::Uniform | CascadeSplit::Logarithmic => 1.0,
-        CascadeSplit::Explicit { ends } => {
-            let ends = &ends[..cascades as usize - 1];
-            let finite = ends.iter().all(|end| end.is_finite());
-            return in_range(
-                field,
-                "of finite ends that grow",
-                finite && ends.is_sorted_by(|before, after| before < after),
-                format_args!("{ends:?}"),
-            );
-        }
-    };
-    in_range(
-        field,
-        "of a lambda in 0..=1",
-        (0.0..=1.0).contains(&lambda),
-        lambda,
-    )
 }

@@ -1,55 +1,15 @@
 //! A ready-made caster: a vertex buffer, perhaps an index buffer, and a matrix.
 
-use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::Mat4;
 
 use crate::cast::mesh_check::{check_bounds, check_buffers, check_matrix, check_pipeline};
+use crate::cast::mesh_descriptor::{MeshCasterDescriptor, MeshIndices};
 use crate::cast::{CasterPipeline, ModelTransform, Revision, ShadowCaster};
 use crate::error::CasterError;
 use crate::gpu::filled_buffer;
 use crate::{Aabb, ShadowView};
-
-/// What of its buffers a [`MeshCaster`] draws.
-#[derive(Clone, Debug)]
-pub enum MeshIndices {
-    /// Vertices in order.
-    None {
-        /// Range of vertices.
-        vertices: Range<u32>,
-    },
-    /// Through an index buffer created with `BufferUsages::INDEX`.
-    Buffer {
-        /// The buffer.
-        buffer: wgpu::Buffer,
-        /// Its format.
-        format: wgpu::IndexFormat,
-        /// Range of indices.
-        indices: Range<u32>,
-        /// Added to every index.
-        base_vertex: i32,
-    },
-}
-
-/// What a [`MeshCaster`] is made of.
-#[derive(Clone, Debug)]
-pub struct MeshCasterDescriptor<'a> {
-    /// Label of the transform buffer.
-    pub label: wgpu::Label<'a>,
-    /// A pipeline with the built-in vertex stage, made on the same device. Where it culls and the transform mirrors, its
-    /// mirrored twin is used. One with the engine's own vertex stage will do if it takes no more than vertex buffer 0 and no
-    /// bind group of its own.
-    pub pipeline: &'a CasterPipeline,
-    /// Vertices laid out as the pipeline says, created with `BufferUsages::VERTEX`.
-    pub vertices: &'a wgpu::Buffer,
-    /// What to draw.
-    pub indices: MeshIndices,
-    /// Bounds of the drawn vertices in model space: finite, or empty for a mesh that casts nothing.
-    pub bounds_model: Aabb,
-    /// Render space from model space: affine and finite, and so small that it takes the bounds to finite ones.
-    pub render_from_model: Mat4,
-}
 
 /// A mesh with one transform. Its revision changes when the transform does, so that still meshes keep their maps.
 #[derive(Debug)]

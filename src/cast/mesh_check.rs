@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use glam::Mat4;
 
-use crate::cast::{CasterPipeline, MeshCasterDescriptor, MeshIndices};
+use crate::cast::CasterPipeline;
+use crate::cast::mesh_descriptor::{MeshCasterDescriptor, MeshIndices};
 use crate::error::CasterError;
 use crate::gpu::capture_device_errors;
 use crate::{Aabb, DeviceRefusal};

@@ -9,7 +9,7 @@
 //! pipeline_reads.rs      what a vertex stage reads
 //! caster_limits.rs       what pipelines and passes need of a device's limits
 //! view_uniform.rs        what a vertex stage knows of the view
-//! mesh.rs                MeshCaster: a ready-made caster; mesh_check.rs: what it must be made of
+//! mesh.rs                MeshCaster: a ready-made caster; mesh_descriptor.rs, mesh_check.rs: what it is and must be made of
 //! closed.rs              which meshes are closed solids
 //! content.rs             what a layer holds, and what a frame must draw
 //! recorder.rs            the passes
@@ -28,6 +28,7 @@ mod draw_casters;
 mod frame_casters;
 mod mesh;
 mod mesh_check;
+mod mesh_descriptor;
 mod pipeline;
 mod pipeline_build;
 mod pipeline_descriptor;
@@ -40,7 +41,8 @@ pub(crate) use caster_limits::caster_group;
 pub use closed::is_closed_solid;
 pub(crate) use content::{Plan, ViewDraws};
 pub(crate) use frame_casters::{CasterAnswers, FrameCasters};
-pub use mesh::{MeshCaster, MeshCasterDescriptor, MeshIndices};
+pub use mesh::MeshCaster;
+pub use mesh_descriptor::{MeshCasterDescriptor, MeshIndices};
 pub use pipeline::CasterPipeline;
 pub use pipeline_descriptor::{
     CasterPipelineDescriptor, CasterVertex, ModelTransform, PositionAttribute,

@@ -1,5 +1,8 @@
 //! Where along the view one cascade ends and the next begins.
 
+use crate::ShadowError;
+use crate::check::in_range;
+
 /// How the covered depth is divided among the cascades of a directional light.
 ///
 /// Depths run from the nearest visible receiver (not the camera's near plane) to the farthest one or the camera's distance
@@ -51,5 +54,29 @@ impl CascadeSplit {
             }
             Self::Explicit { ends } => f64::from(ends[index - 1]).max(near).min(far),
         }
+    }
+
+    /// Checks its numbers for a light of `cascades` cascades.
+    pub(crate) fn check(self, field: &'static str, cascades: u32) -> Result<(), ShadowError> {
+        let lambda = match self {
+            Self::Practical { lambda } => lambda,
+            Self::Uniform | Self::Logarithmic => 1.0,
+            Self::Explicit { ends } => {
+                let ends = &ends[..cascades as usize - 1];
+                let finite = ends.iter().all(|end| end.is_finite());
+                return in_range(
+                    field,
+                    "of finite ends that grow",
+                    finite && ends.is_sorted_by(|before, after| before < after),
+                    format_args!("{ends:?}"),
+                );
+            }
+        };
+        in_range(
+            field,
+            "of a lambda in 0..=1",
+            (0.0..=1.0).contains(&lambda),
+            lambda,
+        )
     }
 }

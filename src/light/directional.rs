@@ -12,7 +12,7 @@ use crate::light::maps::{
     LayerBase, LightMaps, LightMapsDescriptor, MapsFrame, light_maps_getters,
 };
 use crate::light::report::ShadowReport;
-use crate::receive::{Sampling, Selection};
+use crate::receive::{Sampling, Selection, check_bias, check_planar_filter};
 use crate::{
     Bias, CascadeSplit, DepthFormat, Filter, ShadowError, ShadowFrame, ShadowView, Stability,
 };
@@ -136,25 +136,23 @@ impl DirectionalShadow {
             (1..=MAX_CASCADES as u32).contains(&descriptor.cascades),
             descriptor.cascades,
         )?;
-        check::split(
-            "DirectionalShadowDescriptor::split",
-            descriptor.split,
-            descriptor.cascades,
-        )?;
+        descriptor
+            .split
+            .check("DirectionalShadowDescriptor::split", descriptor.cascades)?;
         check::in_range(
             "DirectionalShadowDescriptor::blend",
             "in 0..=0.5",
             (0.0..=0.5).contains(&descriptor.blend),
             descriptor.blend,
         )?;
-        check::planar_filter("DirectionalShadowDescriptor::filter", descriptor.filter)?;
+        check_planar_filter("DirectionalShadowDescriptor::filter", descriptor.filter)?;
         check::in_range(
             "DirectionalShadowDescriptor::filter",
             "of an angular diameter below π",
             descriptor.filter.light_size() < std::f32::consts::PI,
             descriptor.filter.light_size(),
         )?;
-        check::bias("DirectionalShadowDescriptor::bias", descriptor.bias)?;
+        check_bias("DirectionalShadowDescriptor::bias", descriptor.bias)?;
         check_layers(
             device,
             "DirectionalShadowDescriptor::cascades",

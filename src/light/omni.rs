@@ -7,7 +7,7 @@ use crate::fit::LightAxes;
 use crate::light::layer_limits::check_layers;
 use crate::light::local::{LocalLights, LocalPlacement};
 use crate::light::maps::{LightMaps, LightMapsDescriptor, light_maps_getters};
-use crate::receive::{Sampling, Selection};
+use crate::receive::{Sampling, Selection, check_bias, check_filter};
 use crate::{Bias, Filter, ShadowError, ShadowFrame, ShadowReport};
 
 /// What an [`OmniShadow`] is made of.
@@ -79,8 +79,8 @@ impl OmniShadow {
         device: &wgpu::Device,
         descriptor: &OmniShadowDescriptor<'_>,
     ) -> Result<Self, ShadowError> {
-        check::filter("OmniShadowDescriptor::filter", descriptor.filter)?;
-        check::bias("OmniShadowDescriptor::bias", descriptor.bias)?;
+        check_filter("OmniShadowDescriptor::filter", descriptor.filter)?;
+        check_bias("OmniShadowDescriptor::bias", descriptor.bias)?;
         check_layers(device, "the six faces of an OmniShadow", 6)?;
         let maps = LightMaps::new(
             device,

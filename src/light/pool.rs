@@ -6,7 +6,7 @@ use crate::check;
 use crate::light::layer_limits::check_layers;
 use crate::light::local::{LocalLights, LocalPlacement};
 use crate::light::maps::{LightMaps, LightMapsDescriptor, light_maps_getters};
-use crate::receive::{Sampling, Selection};
+use crate::receive::{Sampling, Selection, check_bias, check_filter, check_planar_filter};
 use crate::{Bias, Filter, OmniLight, ShadowError, ShadowFrame, ShadowReport, SpotLight};
 
 /// What a pool is made of.
@@ -165,7 +165,7 @@ macro_rules! pool {
                 descriptor: &PoolDescriptor<'_>,
             ) -> Result<Self, ShadowError> {
                 $filter_check("PoolDescriptor::filter", descriptor.filter)?;
-                check::bias("PoolDescriptor::bias", descriptor.bias)?;
+                check_bias("PoolDescriptor::bias", descriptor.bias)?;
                 check_descriptor(device, descriptor, $views)?;
                 let maps = LightMaps::new(
                     device,
@@ -258,7 +258,7 @@ pool!(
     OmniLight,
     6,
     Selection::CubeFace,
-    check::filter
+    check_filter
 );
 
 pool!(
@@ -269,7 +269,7 @@ pool!(
     SpotLight,
     1,
     Selection::OneView,
-    check::planar_filter
+    check_planar_filter
 );
 
 light_maps_getters!(OmniShadowPool, "face, six to a slot");

@@ -7,7 +7,7 @@ use crate::fit::{LightAxes, MAX_LOCAL_VIEWS};
 use crate::light::layer_limits::check_layers;
 use crate::light::local::{LocalLights, LocalPlacement};
 use crate::light::maps::{LightMaps, LightMapsDescriptor, light_maps_getters};
-use crate::receive::{Sampling, Selection};
+use crate::receive::{Sampling, Selection, check_bias, check_planar_filter};
 use crate::{Bias, Filter, ShadowError, ShadowFrame, ShadowReport};
 
 /// What a [`SpotShadow`] is made of.
@@ -71,8 +71,8 @@ impl SpotShadow {
         device: &wgpu::Device,
         descriptor: &SpotShadowDescriptor<'_>,
     ) -> Result<Self, ShadowError> {
-        check::planar_filter("SpotShadowDescriptor::filter", descriptor.filter)?;
-        check::bias("SpotShadowDescriptor::bias", descriptor.bias)?;
+        check_planar_filter("SpotShadowDescriptor::filter", descriptor.filter)?;
+        check_bias("SpotShadowDescriptor::bias", descriptor.bias)?;
         check_layers(device, "the map of a SpotShadow", 1)?;
         let maps = LightMaps::new(
             device,

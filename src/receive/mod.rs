@@ -3,6 +3,7 @@
 //! ```text
 //! filter.rs     which texels count, and how much
 //! bias.rs       how a receiver is kept from shadowing itself
+//! check_sampling.rs  what filter and bias must be
 //! uniforms.rs   the layout that Rust and WGSL share
 //! reference.rs  the WGSL's arithmetic once more in f64
 //! bindings.rs   one bind group for a set of lights
@@ -11,6 +12,7 @@
 
 mod bias;
 mod bindings;
+mod check_sampling;
 mod emit;
 mod filter;
 pub mod reference;
@@ -19,6 +21,7 @@ mod uniforms;
 pub use bias::Bias;
 pub(crate) use bindings::{Receiver, Selection};
 pub use bindings::{ShadowBindings, ShadowBindingsDescriptor, ShadowSource};
+pub(crate) use check_sampling::{check_bias, check_filter, check_planar_filter};
 pub use filter::Filter;
 pub use uniforms::ShadowViewUniform;
 pub(crate) use uniforms::{

@@ -25,6 +25,7 @@ mod errors;
 mod far_origins;
 mod filter_parity;
 mod fit_images;
+mod floors;
 mod frame_errors;
 mod front;
 mod golden;

@@ -1,0 +1,54 @@
+//! What a filter and a bias must be: each failure names field, rule and value.
+
+use crate::ShadowError;
+use crate::check::in_range;
+use crate::receive::{Bias, Filter};
+
+/// A filter that a light with a single map plane at a time can use.
+pub(crate) fn check_planar_filter(field: &'static str, planar: Filter) -> Result<(), ShadowError> {
+    in_range(
+        field,
+        "a filter for all kinds of light (direction-space filters are for point lights)",
+        planar.directions().is_none(),
+        format_args!("{planar:?}"),
+    )?;
+    check_filter(field, planar)
+}
+
+pub(crate) fn check_filter(field: &'static str, filter: Filter) -> Result<(), ShadowError> {
+    if filter.directions().is_some() {
+        let radius = filter.radius_world();
+        return in_range(
+            field,
+            "of a finite radius above 0",
+            radius > 0.0 && radius.is_finite(),
+            radius,
+        );
+    }
+    if let Filter::Penumbra { light_size } | Filter::PenumbraTurned { light_size } = filter {
+        return in_range(
+            field,
+            "of a finite light size above 0",
+            light_size > 0.0 && light_size.is_finite(),
+            light_size,
+        );
+    }
+    let sharpness = filter.sharpness();
+    in_range(
+        field,
+        "of a finite sharpness of at least 1",
+        sharpness >= 1.0 && sharpness.is_finite(),
+        sharpness,
+    )
+}
+
+pub(crate) fn check_bias(field: &'static str, bias: Bias) -> Result<(), ShadowError> {
+    let (constant, slope) = bias.manual();
+    let valid = |value: f32| value >= 0.0 && value.is_finite();
+    in_range(
+        field,
+        "of finite constant and slope of at least 0",
+        valid(constant) && valid(slope),
+        format_args!("constant {constant}, slope {slope}"),
+    )
+}
