@@ -3,9 +3,9 @@
 use bytemuck::Zeroable;
 
 use crate::ShadowError;
-use crate::cast::content::ViewDraws;
 use crate::cast::cube_rule::one_pass_casters;
 use crate::cast::draw_casters::{DrawnCaster, PassDefaults, draw_casters};
+use crate::cast::layer_cache::ViewDraws;
 use crate::cast::view_uniform::{CasterViewUniform, VIEW_UNIFORM_BYTES, six_views_layout};
 use crate::cast::{CasterPipeline, FrameCasters};
 use crate::gpu::{

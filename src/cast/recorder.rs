@@ -1,8 +1,8 @@
 //! Which views need drawing this frame, and the passes that draw them.
 
-use crate::cast::content::{Content, Plan, ViewDraws};
 use crate::cast::cube_pass::{CubePass, PreparedCubePass};
 use crate::cast::draw_casters::{DrawnCaster, PassDefaults, draw_casters};
+use crate::cast::layer_cache::{LayerCache, Plan, ViewDraws};
 use crate::cast::view_uniform::{CasterViewUniform, VIEW_UNIFORM_BYTES, view_layout};
 use crate::cast::{CLEAR, CasterPipeline, FrameCasters};
 use crate::gpu::{DepthFormat, DepthMap, PendingUpload, UploadBuffer, capture_device_errors};
@@ -25,9 +25,9 @@ pub(crate) struct Recorder {
 #[derive(Debug)]
 struct Layer {
     label: String,
-    content: Content,
+    content: LayerCache,
     /// A texture of one layer for the part that stands still; none before the first use.
-    still_part: Option<DepthMap>,
+    static_cache: Option<DepthMap>,
     /// The device had no room for one.
     has_no_room: bool,
 }
@@ -84,8 +84,8 @@ impl Recorder {
             })?;
         let layers = (0..layers).map(|layer| Layer {
             label: format!("{label} layer {layer}"),
-            content: Content::default(),
-            still_part: None,
+            content: LayerCache::default(),
+            static_cache: None,
             has_no_room: false,
         });
         Ok(Self {
@@ -116,7 +116,7 @@ impl Recorder {
 
     /// Device memory of the still parts.
     pub fn bytes(&self) -> u64 {
-        let parts = self.layers.iter().filter_map(|l| l.still_part.as_ref());
+        let parts = self.layers.iter().filter_map(|l| l.static_cache.as_ref());
         parts.map(DepthMap::bytes).sum()
     }
 
@@ -136,7 +136,7 @@ impl Recorder {
         for draws in views.iter_mut() {
             let layer = &mut self.layers[draws.view.layer() as usize];
             draws.plan = layer.content.plan(draws, casters, self.can_copy);
-            if draws.plan == Plan::RenewStill && !layer.make_still_part(device, map) {
+            if draws.plan == Plan::RenewStaticCache && !layer.make_static_cache(device, map) {
                 draws.plan = Plan::All;
             }
             if draws.plan != Plan::Keep {
@@ -187,7 +187,7 @@ impl Recorder {
     ) -> u32 {
         if let (Some(cube), Some(prepared)) = (&mut self.cube, prepared.cube) {
             // All layers are cleared, those of faces that nothing casts into as well.
-            let mut contents: Vec<Content> =
+            let mut contents: Vec<LayerCache> =
                 self.layers.iter_mut().map(Layer::take_content).collect();
             for draws in views.iter() {
                 contents[draws.view.layer() as usize].replace(draws, casters);
@@ -222,11 +222,11 @@ impl Recorder {
             let all = all.map(|(&index, &pipeline)| DrawnCaster { index, pipeline });
             let (target, view) = (map.layer_view(index), &draws.view);
             passes += draws.plan.passes();
-            match &layer.still_part {
+            match &layer.static_cache {
                 Some(part) if draws.plan != Plan::All => {
                     let still = |caster: &DrawnCaster<'_>| content.is_still(caster.index);
                     let still_casters = all.clone().filter(still);
-                    if draws.plan == Plan::RenewStill {
+                    if draws.plan == Plan::RenewStaticCache {
                         pass.draw(part.layer_view(0), CLEAR, view, still_casters, casters);
                     } else {
                         for caster in still_casters {
@@ -253,7 +253,7 @@ impl Recorder {
     /// Forgets what the layers hold, so that every view is drawn again.
     pub fn invalidate(&mut self) {
         for layer in &mut self.layers {
-            layer.content = Content::default();
+            layer.content = LayerCache::default();
         }
         self.uniforms.invalidate();
         if let Some(cube) = &mut self.cube {
@@ -264,19 +264,19 @@ impl Recorder {
 
 impl Layer {
     /// Takes away what is known of the layer, which from now on holds nothing that can be relied on.
-    fn take_content(&mut self) -> Content {
+    fn take_content(&mut self) -> LayerCache {
         std::mem::take(&mut self.content)
     }
 
     /// False where the device has no room for one: then all casters are drawn.
-    fn make_still_part(&mut self, device: &wgpu::Device, map: &DepthMap) -> bool {
-        if self.still_part.is_none() && !self.has_no_room {
+    fn make_static_cache(&mut self, device: &wgpu::Device, map: &DepthMap) -> bool {
+        if self.static_cache.is_none() && !self.has_no_room {
             let label = format!("{} still part", self.label);
-            self.still_part =
+            self.static_cache =
                 DepthMap::new(device, &label, "map_size", map.size(), 1, map.format()).ok();
-            self.has_no_room = self.still_part.is_none();
+            self.has_no_room = self.static_cache.is_none();
         }
-        self.still_part.is_some()
+        self.static_cache.is_some()
     }
 }
 

@@ -4,14 +4,14 @@ use glam::DVec3;
 
 use crate::fit::axes::{LightAxes, LightBox};
 use crate::fit::camera::CameraFrustum;
-use crate::fit::column::{Column, push_column};
+use crate::fit::extruded_rect::{ExtrudedRect, push_extruded_rect};
 use crate::fit::footprint::{FootprintScratch, Slice, SliceReport};
+use crate::fit::map_rect::{DepthRange, LightSpaceBounds, MapRect, MapRectRequest};
 use crate::fit::region::HalfSpaces;
 use crate::fit::spacing::Spacing;
 use crate::fit::split::CascadeSplit;
 use crate::fit::stability::Stability;
 use crate::fit::visible::{self, Seen, SeenBounds};
-use crate::fit::window::{DepthRange, MapWindow, OrthoWindow, WindowRequest};
 use crate::{Aabb, ShadowError};
 
 /// Most cascades that one light may have.
@@ -22,7 +22,7 @@ pub(crate) const MAX_CASCADES: usize = 8;
 pub(crate) enum Region<'a> {
     /// What any of these cameras sees of them.
     Cameras(&'a [CameraFrustum]),
-    /// All that lies in a given box; the window then is the box, whatever the casters.
+    /// All that lies in a given box; the light_bounds then is the box, whatever the casters.
     Bounds(Aabb),
     /// Everywhere.
     Everything,
@@ -64,12 +64,12 @@ impl CasterBounds {
     }
 }
 
-/// The windows of a light, kept from frame to frame for their hysteresis.
+/// The light_bounds of a light, kept from frame to frame for their hysteresis.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct DirectionalFit {
     /// One per cascade; none for a cascade that nothing can shadow.
-    pub windows: [Option<OrthoWindow>; MAX_CASCADES],
-    held: [Option<OrthoWindow>; MAX_CASCADES],
+    pub light_bounds: [Option<LightSpaceBounds>; MAX_CASCADES],
+    held: [Option<LightSpaceBounds>; MAX_CASCADES],
     /// Of the cascades of a camera's view.
     pub slices: [Option<SliceReport>; MAX_CASCADES],
 }
@@ -84,7 +84,7 @@ pub(crate) struct FitScratch {
 }
 
 impl DirectionalFit {
-    /// The windows for this frame; `scratch.casters` is filled.
+    /// The light_bounds for this frame; `scratch.casters` is filled.
     ///
     /// An error where what casts and receives lies so far from the world's origin that f64 does not tell its places apart.
     pub fn fit(
@@ -112,43 +112,43 @@ impl DirectionalFit {
             let slice = camera_slice(input, limits, &visible, cascade);
             let required = required_box(input, limits, slice.as_ref(), &scratch.seen, cascade);
             let held = self.held[cascade].as_ref();
-            let window = match required {
+            let light_bounds = match required {
                 Some(required) if any_casts => {
                     let spacing = checked_spacing(input, limits, slice.as_ref(), &required)?;
-                    fit_window(input, limits, &scratch.casters, (required, spacing), held)
+                    fit_bounds(input, limits, &scratch.casters, (required, spacing), held)
                 }
                 _ => None,
             };
-            next.held[cascade] = window.or(next.held[cascade]);
-            next.windows[cascade] = window;
-            next.slices[cascade] = slice.zip(window).map(|(slice, window)| {
+            next.held[cascade] = light_bounds.or(next.held[cascade]);
+            next.light_bounds[cascade] = light_bounds;
+            next.slices[cascade] = slice.zip(light_bounds).map(|(slice, light_bounds)| {
                 let scratch = &mut scratch.footprint;
-                slice.report(&input.axes, input.origin, &window.plane, scratch)
+                slice.report(&input.axes, input.origin, &light_bounds.rect, scratch)
             });
         }
         Ok(next)
     }
 
-    /// Returns the window of a cascade that something casts into, and adds its casters to `drawn`: those of which some part lies
-    /// over the window, on the way from its receivers to the light. `scratch` is that of the fit.
+    /// Returns the light_bounds of a cascade that something casts into, and adds its casters to `drawn`: those of which some part lies
+    /// over the light_bounds, on the way from its receivers to the light. `scratch` is that of the fit.
     pub fn cull(
         &self,
         cascade: usize,
         input: &FitInput<'_>,
         scratch: &FitScratch,
         drawn: &mut Vec<u32>,
-    ) -> Option<&OrthoWindow> {
-        let window = self.windows[cascade].as_ref()?;
-        let spacing = Spacing::around(input.origin, &window.bounds());
-        let column = Column::new(&input.axes, input.origin, &window.plane);
+    ) -> Option<&LightSpaceBounds> {
+        let light_bounds = self.light_bounds[cascade].as_ref()?;
+        let spacing = Spacing::around(input.origin, &light_bounds.bounds());
+        let volume = ExtrudedRect::new(&input.axes, input.origin, &light_bounds.rect);
         let all = (0u32..).zip(scratch.casters.iter().zip(input.casters));
         drawn.extend(all.filter_map(|(index, (caster, bounds))| {
             let marks = caster.can_shadow
-                && window.holds_part_of(&caster.widest_light(spacing))
-                && column.meets(bounds);
+                && light_bounds.holds_part_of(&caster.widest_light(spacing))
+                && volume.meets(bounds);
             marks.then_some(index)
         }));
-        Some(window)
+        Some(light_bounds)
     }
 }
 
@@ -270,7 +270,7 @@ fn around_slice(
 /// Can a shadow of `caster` fall on anything visible? A point is shadowed by a point of the caster further along the way to
 /// the light, so on each world axis the caster must reach beyond the receivers' near end in the light's direction. A flat
 /// floor under everything else fails this (it reaches just as far as the lowest receiver: itself), and neither widens the
-/// window nor is drawn.
+/// light_bounds nor is drawn.
 fn can_shadow(caster: &Aabb, receivers: &SeenBounds, toward_light: DVec3) -> bool {
     let (low, high) = (caster.min.as_dvec3(), caster.max.as_dvec3());
     (0..3).all(|axis| {
@@ -285,15 +285,15 @@ fn can_shadow(caster: &Aabb, receivers: &SeenBounds, toward_light: DVec3) -> boo
     })
 }
 
-/// The window for receivers in `required`: seen from the light, what both receivers and casters cover. What rounding makes
+/// The light_bounds for receivers in `required`: seen from the light, what both receivers and casters cover. What rounding makes
 /// doubtful counts as reaching.
-fn fit_window(
+fn fit_bounds(
     input: &FitInput<'_>,
     limits: &FitLimits,
     casters: &[CasterBounds],
     (required, spacing): (LightBox, Spacing),
-    held: Option<&OrthoWindow>,
-) -> Option<OrthoWindow> {
+    held: Option<&LightSpaceBounds>,
+) -> Option<LightSpaceBounds> {
     let reaches = |caster: &&CasterBounds| {
         let light = caster.widest_light(spacing);
         caster.can_shadow && light.max.z > required.min.z && light.overlaps_xy(&required)
@@ -322,7 +322,7 @@ fn fit_window(
         limits.map_size,
         texel_floor,
     );
-    let request = WindowRequest {
+    let request = MapRectRequest {
         min,
         max,
         map_size: limits.map_size,
@@ -330,32 +330,32 @@ fn fit_window(
         texel_floor,
         whole: f64::INFINITY,
     };
-    let plane = MapWindow::fit(&request, held.map(|held| &held.plane));
+    let rect = MapRect::fit(&request, held.map(|held| &held.rect));
     let depth = |near| {
-        let least = plane.texel.max_element().max(spacing.least_depth());
+        let least = rect.texel.max_element().max(spacing.least_depth());
         DepthRange::fit(covered.min.z, near, least, held.map(|held| &held.depth))
     };
-    let window = OrthoWindow {
-        plane,
+    let light_bounds = LightSpaceBounds {
+        rect,
         depth: depth(covered.max.z),
     };
-    // Only what stands over the window counts for the near plane: a wide ground's far end does not. The rounded window is
+    // Only what stands over the light_bounds counts for the near rect: a wide ground's far end does not. The rounded light_bounds is
     // larger than what was asked for, so this also takes in casters that touch only its rim.
-    let mut over_window = HalfSpaces::default();
-    push_column(&mut over_window, &input.axes, input.origin, &plane);
+    let mut over_rect = HalfSpaces::default();
+    push_extruded_rect(&mut over_rect, &input.axes, input.origin, &rect);
     let mut nearest = covered.min.z;
     for (caster, bounds) in casters.iter().zip(input.casters) {
         let light = caster.widest_light(spacing);
-        if caster.can_shadow && light.max.z > nearest && window.holds_part_of(&light) {
-            over_window.visit_vertices(bounds, |vertex| {
+        if caster.can_shadow && light.max.z > nearest && light_bounds.holds_part_of(&light) {
+            over_rect.visit_vertices(bounds, |vertex| {
                 let z = input.axes.toward_light().dot(input.origin + vertex);
                 nearest = nearest.max(z);
             });
         }
     }
-    Some(OrthoWindow {
+    Some(LightSpaceBounds {
         depth: depth(nearest),
-        ..window
+        ..light_bounds
     })
 }
 

@@ -5,9 +5,9 @@ use glam::{DVec2, DVec3, Vec2};
 use crate::Aabb;
 use crate::fit::LightAxes;
 use crate::fit::camera::CameraFrustum;
-use crate::fit::column::push_column;
+use crate::fit::extruded_rect::push_extruded_rect;
+use crate::fit::map_rect::MapRect;
 use crate::fit::visible::SeenBounds;
-use crate::fit::window::MapWindow;
 
 /// What of its slice of the camera's view a cascade covers, and how finely.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,33 +49,33 @@ pub(crate) struct Slice<'a> {
 }
 
 impl Slice<'_> {
-    /// How `window` covers it.
+    /// How `rect` covers it.
     pub fn report(
         &self,
         axes: &LightAxes,
         origin: DVec3,
-        window: &MapWindow,
+        rect: &MapRect,
         scratch: &mut FootprintScratch,
     ) -> SliceReport {
         let (near, far) = self.between;
         let mut region = self.camera.slice(near, far);
-        push_column(&mut region, axes, origin, window);
+        push_extruded_rect(&mut region, axes, origin, rect);
         let visible = Aabb::new(
             self.visible.render_min.as_vec3(),
             self.visible.render_max.as_vec3(),
         );
-        // Relative to the window, so that nothing is lost to a distant origin.
+        // Relative to the rect, so that nothing is lost to a distant origin.
         scratch.points.clear();
         region.visit_vertices(&visible, |vertex| {
             let light = axes.light_from_world * (origin + vertex);
-            scratch.points.push(light.truncate() - window.min);
+            scratch.points.push(light.truncate() - rect.min);
         });
-        let size = window.max() - window.min;
+        let size = rect.max() - rect.min;
         let share = hull_area(scratch) / (size.x * size.y);
         let height = |depth| self.camera.picture_height(depth);
         let texels = DVec2::new(
-            height(near) / window.texel.max_element(),
-            height(far) / window.texel.min_element(),
+            height(near) / rect.texel.max_element(),
+            height(far) / rect.texel.min_element(),
         );
         SliceReport {
             depth_near: near as f32,

@@ -8,9 +8,9 @@ use glam::{DVec2, DVec3};
 use crate::Aabb;
 use crate::fit::axes::LightAxes;
 use crate::fit::local_input::LocalInput;
+use crate::fit::map_rect::{MapRect, MapRectRequest};
 use crate::fit::reached::{self, Reached};
 use crate::fit::region::{HalfSpace, HalfSpaces, Relation};
-use crate::fit::window::{MapWindow, WindowRequest};
 
 /// Most views of one local light.
 pub(crate) const MAX_LOCAL_VIEWS: usize = 6;
@@ -20,12 +20,12 @@ pub(crate) const MAX_LOCAL_VIEWS: usize = 6;
 /// Casters nearer to the light than this cast nothing.
 const NEAREST_SHARE: f64 = 1.0 / 1024.0;
 
-/// The windows of a local light, kept from frame to frame for their hysteresis.
+/// The rects of a local light, kept from frame to frame for their hysteresis.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LocalFit {
     /// In tangents; none for a view that nothing can shadow.
-    pub windows: [Option<MapWindow>; MAX_LOCAL_VIEWS],
-    held: [Option<MapWindow>; MAX_LOCAL_VIEWS],
+    pub rects: [Option<MapRect>; MAX_LOCAL_VIEWS],
+    held: [Option<MapRect>; MAX_LOCAL_VIEWS],
     /// World distance of the near plane along every view's axis.
     pub near: f64,
     /// World distance beyond which nothing receives.
@@ -39,7 +39,7 @@ struct Extent {
 }
 
 impl LocalFit {
-    /// The windows for this frame; `drawn` is filled with the indices of the casters of each view.
+    /// The rects for this frame; `drawn` is filled with the indices of the casters of each view.
     pub fn fit(
         &self,
         input: &LocalInput<'_>,
@@ -49,7 +49,7 @@ impl LocalFit {
         let light = input.position_world - input.origin;
         let reach = reached::reach(input, light);
         let mut next = Self {
-            windows: [None; MAX_LOCAL_VIEWS],
+            rects: [None; MAX_LOCAL_VIEWS],
             reach,
             near: f64::INFINITY,
             held: self.held,
@@ -66,8 +66,8 @@ impl LocalFit {
             let Some((min, max)) = view.needed(input, reached, nearest) else {
                 continue;
             };
-            let window = MapWindow::fit(
-                &WindowRequest {
+            let rect = MapRect::fit(
+                &MapRectRequest {
                     min,
                     max,
                     map_size: input.map_size,
@@ -77,7 +77,7 @@ impl LocalFit {
                 },
                 self.held[index].as_ref(),
             );
-            let region = view.region(window.min, window.max(), nearest);
+            let region = view.region(rect.min, rect.max(), nearest);
             for caster in &reached.casters {
                 if let Some(distance) = view.nearest_within(&region, &caster.bounds) {
                     drawn[index].push(caster.index);
@@ -85,8 +85,8 @@ impl LocalFit {
                 }
             }
             if !drawn[index].is_empty() {
-                next.windows[index] = Some(window);
-                next.held[index] = Some(window);
+                next.rects[index] = Some(rect);
+                next.held[index] = Some(rect);
             }
         }
         // A power of two, so that it changes rarely; no farther than the reach, where nothing casts.

@@ -5,14 +5,14 @@
 //! region.rs       exact vertices of (convex region ∩ box)
 //! axes.rs         world-fixed light axes, boxes in light space
 //! footprint.rs    what of a slice of the view a window covers
-//! ladder.rs       quantised extents with hysteresis
-//! window.rs       the rectangle of a map plane that a view covers, snapped to whole texels
+//! size_step.rs    quantised sizes with hysteresis
+//! map_rect.rs     the rectangle of a map plane that a view covers, snapped to whole texels
 //! spacing.rs      how finely f64 tells places apart, far from the world's origin
 //! split.rs        where one cascade ends and the next begins
 //! stability.rs    what may change the extent of a cascade
 //! picture_corners.rs  the sphere around a slice of a camera's view
 //! visible.rs      what a camera sees of the receivers
-//! column.rs       what reaches into the space over a window
+//! extruded_rect.rs  what reaches into the space over a map's rectangle
 //! directional.rs  all of it put together for a sun
 //! reached.rs      what a local light reaches
 //! local.rs        the same for the views of a spot or point light; local_input.rs: what it starts from
@@ -21,21 +21,21 @@
 
 mod axes;
 mod camera;
-mod column;
 mod directional;
+mod extruded_rect;
 mod footprint;
-mod ladder;
 mod local;
 mod local_input;
+mod map_rect;
 mod picture_corners;
 mod reached;
 mod region;
+mod size_step;
 mod spacing;
 mod split;
 mod stability;
 mod view;
 mod visible;
-mod window;
 
 pub use axes::LightAxes;
 pub(crate) use axes::LightBox;

@@ -3,7 +3,7 @@
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, Mat4, Vec2, Vec3};
 
 use crate::ShadowError;
-use crate::fit::window::{MapWindow, OrthoWindow};
+use crate::fit::map_rect::{LightSpaceBounds, MapRect};
 use crate::fit::{LightAxes, LocalFit};
 
 /// One depth render: a cascade of a sun, the map of a spot, a face of a point light.
@@ -28,13 +28,13 @@ pub struct ShadowView {
 pub(crate) enum ViewPlacement {
     Orthographic {
         axes: LightAxes,
-        window: OrthoWindow,
+        bounds: LightSpaceBounds,
     },
     Perspective {
         axes: LightAxes,
         position_world: DVec3,
         /// In tangents.
-        window: MapWindow,
+        rect: MapRect,
         /// World distance of the near plane.
         near: f64,
         /// World distance beyond which nothing receives.
@@ -48,30 +48,30 @@ impl ViewPlacement {
     /// World distance of the view's farthest corner, or of a local light, from the world's origin.
     fn reach_from_origin(&self) -> f64 {
         match self {
-            Self::Orthographic { window, .. } => window.bounds().reach(),
+            Self::Orthographic { bounds, .. } => bounds.bounds().reach(),
             Self::Perspective { position_world, .. } => position_world.length(),
         }
     }
 }
 
 impl ShadowView {
-    /// The view of an orthographic window, for an engine whose render space begins at `origin`.
+    /// The view of an orthographic bounds, for an engine whose render space begins at `origin`.
     pub(crate) fn orthographic(
         axes: &LightAxes,
-        window: &OrthoWindow,
+        bounds: &LightSpaceBounds,
         origin: DVec3,
         layer: u32,
     ) -> Self {
-        let (plane, depth) = (&window.plane, &window.depth);
-        let size = plane.max() - plane.min;
+        let (rect, depth) = (&bounds.rect, &bounds.depth);
+        let size = rect.max() - rect.min;
         let light_from_world = axes.light_from_world;
         let world_from_light = light_from_world.transpose();
-        let middle = (plane.min + size * 0.5).extend((depth.near + depth.far) * 0.5);
+        let middle = (rect.min + size * 0.5).extend((depth.near + depth.far) * 0.5);
         let anchor_render = (world_from_light * middle - origin).as_vec3();
         // The anchor is rounded to f32; everything after it starts from the rounded one, so nothing is lost.
         let anchor_light = light_from_world * (anchor_render.as_dvec3() + origin);
         let scale = DVec3::new(2.0 / size.x, 2.0 / size.y, 1.0 / depth.length());
-        let offset = (anchor_light - plane.min.extend(depth.far)) * scale;
+        let offset = (anchor_light - rect.min.extend(depth.far)) * scale;
         let linear = DMat3::from_diagonal(scale) * light_from_world;
         let clip_from_anchor = DMat4::from_cols(
             linear.x_axis.extend(0.0),
@@ -82,22 +82,22 @@ impl ShadowView {
         let half = size.extend(depth.length()) * 0.5;
         Self {
             layer,
-            map_size: plane.map_size,
+            map_size: rect.map_size,
             anchor_render,
             clip_from_anchor,
             placement: ViewPlacement::Orthographic {
                 axes: *axes,
-                window: *window,
+                bounds: *bounds,
             },
             render_reach: f64::from(anchor_render.abs().max_element()) + half.length(),
         }
     }
 
-    /// The view of a local light through a window of tangents.
+    /// The view of a local light through a bounds of tangents.
     pub(crate) fn perspective(
         axes: &LightAxes,
         position_world: DVec3,
-        window: &MapWindow,
+        rect: &MapRect,
         fit: &LocalFit,
         cone_cosine: f64,
         origin: DVec3,
@@ -105,10 +105,10 @@ impl ShadowView {
     ) -> Self {
         let (near, reach) = (fit.near, fit.reach);
         let anchor_render = (position_world - origin).as_vec3();
-        let size = window.max() - window.min;
+        let size = rect.max() - rect.min;
         // clip = 2 (tangent - min) / size * w - w, with w = -z and tangent * w = x or y; depth * w = near.
         let scale = 2.0 / size;
-        let shift = DVec2::ONE + window.min * scale;
+        let shift = DVec2::ONE + rect.min * scale;
         let clip_from_light = DMat4::from_cols(
             DVec4::new(scale.x, 0.0, 0.0, 0.0),
             DVec4::new(0.0, scale.y, 0.0, 0.0),
@@ -118,13 +118,13 @@ impl ShadowView {
         let light_from_anchor = DMat4::from_mat3(axes.light_from_world);
         Self {
             layer,
-            map_size: window.map_size,
+            map_size: rect.map_size,
             anchor_render,
             clip_from_anchor: clip_from_light * light_from_anchor,
             placement: ViewPlacement::Perspective {
                 axes: *axes,
                 position_world,
-                window: *window,
+                rect: *rect,
                 near,
                 reach,
                 cone_cosine,
@@ -136,8 +136,8 @@ impl ShadowView {
     /// The same view of the same world, for a render space that begins at `origin`.
     pub(crate) fn rebased(&self, origin: DVec3) -> Self {
         match &self.placement {
-            ViewPlacement::Orthographic { axes, window } => {
-                Self::orthographic(axes, window, origin, self.layer)
+            ViewPlacement::Orthographic { axes, bounds } => {
+                Self::orthographic(axes, bounds, origin, self.layer)
             }
             ViewPlacement::Perspective {
                 position_world,
@@ -173,8 +173,8 @@ impl ShadowView {
     /// origin moves with a camera, and drawn again, finer, before a rounding from far away can be seen.
     pub(crate) fn may_keep_depths_from(&self, render_reach: f64) -> bool {
         let finest_texel_world = match &self.placement {
-            ViewPlacement::Orthographic { window, .. } => window.plane.texel.min_element(),
-            ViewPlacement::Perspective { window, near, .. } => window.texel.min_element() * near,
+            ViewPlacement::Orthographic { bounds, .. } => bounds.rect.texel.min_element(),
+            ViewPlacement::Perspective { rect, near, .. } => rect.texel.min_element() * near,
         };
         let rounding_world = position_error_world(render_reach);
         rounding_world <= 2.0 * self.position_error_world()
@@ -234,15 +234,15 @@ impl ShadowView {
     /// perspective one, where it is largest.
     pub fn texel_size_world(&self) -> Vec2 {
         match &self.placement {
-            ViewPlacement::Orthographic { window, .. } => window.plane.texel.as_vec2(),
-            ViewPlacement::Perspective { window, reach, .. } => (window.texel * *reach).as_vec2(),
+            ViewPlacement::Orthographic { bounds, .. } => bounds.rect.texel.as_vec2(),
+            ViewPlacement::Perspective { rect, reach, .. } => (rect.texel * *reach).as_vec2(),
         }
     }
 
     /// World distance from the near plane to the far plane, or to the end of the light's reach.
     pub fn depth_range_world(&self) -> f32 {
         match &self.placement {
-            ViewPlacement::Orthographic { window, .. } => window.depth.length() as f32,
+            ViewPlacement::Orthographic { bounds, .. } => bounds.depth.length() as f32,
             ViewPlacement::Perspective { near, reach, .. } => (reach - near) as f32,
         }
     }
@@ -251,10 +251,10 @@ impl ShadowView {
     /// `light_size` radians across or a local one of `light_size` world units in radius.
     pub(crate) fn penumbra_texels(&self, light_size: f64) -> DVec2 {
         match &self.placement {
-            ViewPlacement::Orthographic { window, .. } => {
-                window.depth.length() * (light_size * 0.5).tan() / window.plane.texel
+            ViewPlacement::Orthographic { bounds, .. } => {
+                bounds.depth.length() * (light_size * 0.5).tan() / bounds.rect.texel
             }
-            ViewPlacement::Perspective { window, near, .. } => light_size / near / window.texel,
+            ViewPlacement::Perspective { rect, near, .. } => light_size / near / rect.texel,
         }
     }
 
@@ -262,8 +262,8 @@ impl ShadowView {
     /// 65536: x in the low half, y, which grows downward, in the high.
     pub(crate) fn world_grid(&self) -> u32 {
         let plane = match &self.placement {
-            ViewPlacement::Orthographic { window, .. } => &window.plane,
-            ViewPlacement::Perspective { window, .. } => window,
+            ViewPlacement::Orthographic { bounds, .. } => &bounds.rect,
+            ViewPlacement::Perspective { rect, .. } => rect,
         };
         let first = DVec2::new(plane.min.x, -plane.max().y) / plane.texel;
         let wrapped = first.round().rem_euclid(DVec2::splat(65_536.0));
@@ -324,7 +324,7 @@ impl ShadowView {
     pub(crate) fn depth_error_world(&self) -> f64 {
         let (absolute, relative) = self.depth_error_ndc();
         match &self.placement {
-            ViewPlacement::Orthographic { window, .. } => absolute * window.depth.length(),
+            ViewPlacement::Orthographic { bounds, .. } => absolute * bounds.depth.length(),
             // depth = near / w, so a depth error e is w² / near · e of distance.
             ViewPlacement::Perspective { near, reach, .. } => {
                 reach * reach / near * absolute + reach * relative

@@ -9,7 +9,7 @@ use crate::fit::{
 };
 use crate::light::layer_limits::check_layers;
 use crate::light::maps::{
-    LayerBase, LightMaps, LightMapsDescriptor, MapsFrame, light_maps_getters,
+    LayerState, LightMaps, LightMapsDescriptor, MapsFrame, light_maps_getters,
 };
 use crate::light::report::ShadowReport;
 use crate::receive::{Sampling, Selection, check_bias, check_planar_filter};
@@ -217,7 +217,7 @@ impl DirectionalShadow {
         let fit = self.fit.fit(&input, &self.limits, &mut self.scratch)?;
         let views = self.drawn_views(&fit, &input)?;
         let layers: [_; MAX_CASCADES] =
-            std::array::from_fn(|layer| LayerBase::directional(layer as u32, fit.slices[layer]));
+            std::array::from_fn(|layer| LayerState::directional(layer as u32, fit.slices[layer]));
         let maps_frame = MapsFrame {
             views,
             layers: &layers[..self.limits.cascades],
@@ -255,11 +255,12 @@ impl DirectionalShadow {
         let mut views = self.maps.spare_views();
         for cascade in 0..self.limits.cascades {
             let mut drawn = self.maps.spare_list();
-            let Some(window) = fit.cull(cascade, input, &self.scratch, &mut drawn) else {
+            let Some(light_bounds) = fit.cull(cascade, input, &self.scratch, &mut drawn) else {
                 self.maps.return_list(drawn);
                 continue;
             };
-            let view = ShadowView::orthographic(&input.axes, window, input.origin, cascade as u32);
+            let view =
+                ShadowView::orthographic(&input.axes, light_bounds, input.origin, cascade as u32);
             views.push(ViewDraws::new(view.checked()?, drawn));
         }
         Ok(views)

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use crate::cast::ViewDraws;
 use crate::fit::{LightAxes, LocalFit, LocalInput, MAX_LOCAL_VIEWS, Reached};
-use crate::light::maps::{LayerBase, LightMaps, MapsFrame};
+use crate::light::maps::{LayerState, LightMaps, MapsFrame};
 use crate::{ShadowError, ShadowFrame, ShadowReport, ShadowView};
 
 /// State of the lights in the slots of one set of maps.
@@ -14,7 +14,7 @@ pub(crate) struct LocalLights {
     slots: Vec<SlotState>,
     /// Empty between frames; kept for their memory.
     candidates: Vec<Candidate>,
-    layers: Vec<LayerBase>,
+    layers: Vec<LayerState>,
     reached: Reached,
 }
 
@@ -108,7 +108,7 @@ impl LocalLights {
             } else {
                 (state.position_world, state.fit.reach)
             };
-            layers.extend((0..light.view_count).map(|view| LayerBase {
+            layers.extend((0..light.view_count).map(|view| LayerState {
                 layer: first_layer + view,
                 anchor_render: (position_world - frame.origin).as_vec3(),
                 reach_world,
@@ -186,14 +186,14 @@ impl LocalLights {
         let mut views = [None; MAX_LOCAL_VIEWS];
         let mut needed = 0;
         for (index, drawn) in drawn.into_iter().enumerate() {
-            let (Some(axes), Some(window)) = (axes.get(index), &fit.windows[index]) else {
+            let (Some(axes), Some(rect)) = (axes.get(index), &fit.rects[index]) else {
                 maps.return_list(drawn);
                 continue;
             };
             let view = ShadowView::perspective(
                 axes,
                 light.position_world,
-                window,
+                rect,
                 &fit,
                 light.cone_cosine,
                 frame.origin,

@@ -52,7 +52,7 @@ pub(crate) struct LightMapsDescriptor<'a> {
 
 /// A layer that a light of this frame has, and what its uniform says where nothing casts into it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct LayerBase {
+pub(crate) struct LayerState {
     pub layer: u32,
     /// The place of a local light.
     pub anchor_render: Vec3,
@@ -64,7 +64,7 @@ pub(crate) struct LayerBase {
     pub slice: Option<SliceReport>,
 }
 
-impl LayerBase {
+impl LayerState {
     pub fn directional(layer: u32, slice: Option<SliceReport>) -> Self {
         Self {
             layer,
@@ -79,7 +79,7 @@ impl LayerBase {
 /// What a frame brings to the maps.
 pub(crate) struct MapsFrame<'a> {
     /// The layers of this frame's lights; all others are lit and not reported.
-    pub layers: &'a [LayerBase],
+    pub layers: &'a [LayerState],
     /// The views that something casts into, in the order of `layers`; the other layers are lit.
     pub views: Vec<ViewDraws>,
     /// The camera, if there is one.
@@ -244,7 +244,7 @@ impl LightMaps {
     /// One uniform per layer of the texture.
     fn uniforms_of(
         &mut self,
-        layers: &[LayerBase],
+        layers: &[LayerState],
         views: &[ViewDraws],
         viewer_render: Option<Vec3>,
     ) -> Vec<ShadowViewUniform> {
@@ -268,7 +268,7 @@ impl LightMaps {
         uniforms
     }
 
-    fn fill_report(&mut self, layers: &[LayerBase], casters: &FrameCasters<'_>) {
+    fn fill_report(&mut self, layers: &[LayerState], casters: &FrameCasters<'_>) {
         let caster_count = casters.len() as u32;
         let mut views = self.views.iter().peekable();
         let reports = layers.iter().map(|base| {

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::fit::LightBox;
-use crate::fit::ladder::{rung_up, rung_with_hysteresis};
+use crate::fit::size_step::{size_step_up, size_step_with_hysteresis};
 
 /// Steps into which a depth range is divided; its ends lie on whole steps, so that they rarely move.
 const DEPTH_STEPS: f64 = 64.0;
@@ -11,7 +11,7 @@ const DEPTH_STEPS: f64 = 64.0;
 /// What one window must hold, and at which resolution. Units are the map plane's own: world units in light space for an
 /// orthographic view, tangents of angles for a perspective one.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct WindowRequest {
+pub(crate) struct MapRectRequest {
     /// Least x and y to cover.
     pub min: DVec2,
     /// Greatest x and y to cover.
@@ -29,7 +29,7 @@ pub(crate) struct WindowRequest {
 
 /// A rectangle of whole texels in the plane of a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct MapWindow {
+pub(crate) struct MapRect {
     /// Least x and y: a whole number of texels from the plane's origin.
     pub min: DVec2,
     /// Size of a texel along x and y.
@@ -38,10 +38,10 @@ pub(crate) struct MapWindow {
     pub map_size: u32,
 }
 
-impl MapWindow {
+impl MapRect {
     /// The window for `request`. The `held` one stays wholly or in part as long as it serves, so that small motions of a
     /// camera change nothing.
-    pub fn fit(request: &WindowRequest, held: Option<&Self>) -> Self {
+    pub fn fit(request: &MapRectRequest, held: Option<&Self>) -> Self {
         let held = held.filter(|held| held.map_size == request.map_size);
         let (min_x, texel_x) = fit_axis(request, held, 0);
         let (min_y, texel_y) = fit_axis(request, held, 1);
@@ -59,18 +59,18 @@ impl MapWindow {
 }
 
 /// Start and texel size along one axis.
-fn fit_axis(request: &WindowRequest, held: Option<&MapWindow>, axis: usize) -> (f64, f64) {
+fn fit_axis(request: &MapRectRequest, held: Option<&MapRect>, axis: usize) -> (f64, f64) {
     let (low, high) = (request.min[axis], request.max[axis]);
     let size = f64::from(request.map_size);
     let margin = f64::from(request.margin_texels);
     // One texel is lost to snapping. A map that is all margin is too small to snap: it is centred on what it covers.
     let usable = size - 2.0 * margin - 1.0;
     if usable < 1.0 {
-        let texel = rung_up(((high - low) / size).max(request.texel_floor));
+        let texel = size_step_up(((high - low) / size).max(request.texel_floor));
         return ((low + high) * 0.5 - 0.5 * size * texel, texel);
     }
     let texel_needed = ((high - low) / usable).max(request.texel_floor);
-    let texel = rung_with_hysteresis(texel_needed, held.map(|held| held.texel[axis]));
+    let texel = size_step_with_hysteresis(texel_needed, held.map(|held| held.texel[axis]));
     let whole_texel = 2.0 * request.whole / size;
     if texel >= whole_texel {
         return (-request.whole, whole_texel);
@@ -101,7 +101,7 @@ impl DepthRange {
     pub fn fit(far: f64, near: f64, least: f64, held: Option<&Self>) -> Self {
         // One step behind the deepest receiver, so that rounding never puts it behind the far plane, and two for snapping.
         let needed = (near - far).max(least) * DEPTH_STEPS / (DEPTH_STEPS - 4.0);
-        let range = rung_with_hysteresis(needed, held.map(Self::length));
+        let range = size_step_with_hysteresis(needed, held.map(Self::length));
         let step = range / DEPTH_STEPS;
         match held {
             Some(held) if held.length() == range && held.far + step <= far && near <= held.near => {
@@ -125,12 +125,12 @@ impl DepthRange {
 
 /// The window and depth range of an orthographic view, in absolute light space.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct OrthoWindow {
-    pub plane: MapWindow,
+pub(crate) struct LightSpaceBounds {
+    pub rect: MapRect,
     pub depth: DepthRange,
 }
 
-impl OrthoWindow {
+impl LightSpaceBounds {
     /// Can geometry in `bounds` leave a mark in this map?
     pub fn holds_part_of(&self, bounds: &LightBox) -> bool {
         self.bounds().overlaps_xy(bounds) && bounds.max.z > self.depth.far
@@ -139,8 +139,8 @@ impl OrthoWindow {
     /// The box that the view covers.
     pub fn bounds(&self) -> LightBox {
         LightBox {
-            min: self.plane.min.extend(self.depth.far),
-            max: self.plane.max().extend(self.depth.near),
+            min: self.rect.min.extend(self.depth.far),
+            max: self.rect.max().extend(self.depth.near),
         }
     }
 }
@@ -149,8 +149,8 @@ impl OrthoWindow {
 mod tests {
     use super::*;
 
-    fn request(min: DVec2, max: DVec2) -> WindowRequest {
-        WindowRequest {
+    fn request(min: DVec2, max: DVec2) -> MapRectRequest {
+        MapRectRequest {
             min,
             max,
             map_size: 512,
@@ -160,7 +160,7 @@ mod tests {
         }
     }
 
-    fn assert_holds(window: &MapWindow, request: &WindowRequest) {
+    fn assert_holds(window: &MapRect, request: &MapRectRequest) {
         let margin = window.texel * f64::from(request.margin_texels);
         assert!((window.min + margin).cmple(request.min).all());
         assert!((window.max() - margin).cmpge(request.max).all());
@@ -175,7 +175,7 @@ mod tests {
             let center = DVec2::new((t * 0.713).sin() * 1e5, (t * 0.317).cos() * 1e3);
             let half = DVec2::new(0.1 + t * 0.05, 3.0 + (t * 0.1).sin());
             let request = request(center - half, center + half);
-            let window = MapWindow::fit(&request, None);
+            let window = MapRect::fit(&request, None);
             assert_holds(&window, &request);
             let phase = window.min / window.texel;
             assert!((phase - phase.round()).abs().max_element() < 1e-4);
@@ -188,13 +188,13 @@ mod tests {
     #[test]
     fn a_held_window_stays_until_it_must_move() {
         let first = request(DVec2::new(-4.0, -3.0), DVec2::new(4.3, 3.1));
-        let held = MapWindow::fit(&first, None);
+        let held = MapRect::fit(&first, None);
         let nudge = DVec2::new(held.texel.x * 0.4, -held.texel.y * 0.3);
         let second = request(first.min + nudge, first.max + nudge);
-        assert_eq!(MapWindow::fit(&second, Some(&held)), held);
+        assert_eq!(MapRect::fit(&second, Some(&held)), held);
         let far = DVec2::new(7.0, 0.0);
         let third = request(first.min + far, first.max + far);
-        let moved = MapWindow::fit(&third, Some(&held));
+        let moved = MapRect::fit(&third, Some(&held));
         assert_holds(&moved, &third);
         assert_eq!(moved.texel, held.texel);
         let texels = (moved.min - held.min) / held.texel;
@@ -206,7 +206,7 @@ mod tests {
     fn a_large_window_is_the_whole() {
         let mut request = request(DVec2::new(-0.9, -0.1), DVec2::new(0.95, 0.1));
         request.whole = 0.97;
-        let window = MapWindow::fit(&request, None);
+        let window = MapRect::fit(&request, None);
         assert!(window.min.x == -0.97 && (window.max().x - 0.97).abs() <= 4.0 * f64::EPSILON);
         assert!(window.texel.y < window.texel.x * 0.25);
         assert_holds(&window, &request);
@@ -232,7 +232,7 @@ mod tests {
         for map_size in [1, 2, 3, 7] {
             let mut request = request(DVec2::splat(2.5), DVec2::splat(2.5));
             request.map_size = map_size;
-            let window = MapWindow::fit(&request, None);
+            let window = MapRect::fit(&request, None);
             assert!(window.texel.min_element() > 0.0 && window.min.is_finite());
             assert!(window.min.max_element() < 2.5 && window.max().min_element() > 2.5);
         }

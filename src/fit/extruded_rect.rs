@@ -1,19 +1,19 @@
-//! The space over a window of a directional light, endless toward the light: what casters must reach into to leave a mark.
+//! The space over a rect of a directional light, endless toward the light: what casters must reach into to leave a mark.
 
 use glam::{DVec2, DVec3};
 
 use crate::Aabb;
 use crate::fit::LightAxes;
+use crate::fit::map_rect::MapRect;
 use crate::fit::region::{HalfSpace, HalfSpaces};
-use crate::fit::window::MapWindow;
 
-/// The column over a window, ready to be asked of many boxes.
+/// The volume over a rect, ready to be asked of many boxes.
 ///
 /// Seen along the light a box is a hexagon, whose sides run along the projected world axes. Two convex figures in the plane
-/// are apart exactly if a normal of one's sides separates them (Gottschalk et al. 1996): two normals of the window, and these
-/// three. The caller has asked the window's own already, by the box's interval in light space.
+/// are apart exactly if a normal of one's sides separates them (Gottschalk et al. 1996): two normals of the rect, and these
+/// three. The caller has asked the rect's own already, by the box's interval in light space.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Column {
+pub(crate) struct ExtrudedRect {
     center_render: DVec3,
     /// World distance by which that may be off.
     center_error: f64,
@@ -25,13 +25,13 @@ pub(crate) struct Column {
 struct Side {
     normal: DVec3,
     normal_abs: DVec3,
-    window_reach: f64,
+    rect_reach: f64,
 }
 
-impl Column {
-    pub fn new(axes: &LightAxes, origin: DVec3, window: &MapWindow) -> Self {
-        let half = (window.max() - window.min) * 0.5;
-        let center = window.min + half;
+impl ExtrudedRect {
+    pub fn new(axes: &LightAxes, origin: DVec3, rect: &MapRect) -> Self {
+        let half = (rect.max() - rect.min) * 0.5;
+        let center = rect.min + half;
         let center_world = axes.right() * center.x + axes.up() * center.y;
         let sides = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| {
             let along = DVec2::new(axes.right().dot(axis), axes.up().dot(axis));
@@ -40,7 +40,7 @@ impl Column {
             Side {
                 normal,
                 normal_abs: normal.abs(),
-                window_reach: across.abs().dot(half),
+                rect_reach: across.abs().dot(half),
             }
         });
         Self {
@@ -52,7 +52,7 @@ impl Column {
         }
     }
 
-    /// Does the box, seen along the light, meet the window on all of the hexagon's normals?
+    /// Does the box, seen along the light, meet the rect on all of the hexagon's normals?
     pub fn meets(&self, bounds: &Aabb) -> bool {
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
         let between = (min + max) * 0.5 - self.center_render;
@@ -61,18 +61,18 @@ impl Column {
         let slack =
             16.0 * f64::EPSILON * self.center_render.abs().max_element() + self.center_error;
         self.sides.iter().all(|side| {
-            let reach = side.window_reach + side.normal_abs.dot(half);
+            let reach = side.rect_reach + side.normal_abs.dot(half);
             side.normal.dot(between).abs() <= reach + slack
         })
     }
 }
 
-/// Adds the four sides of a window to a region of render space.
-pub(crate) fn push_column(
+/// Adds the four sides of a rect to a region of render space.
+pub(crate) fn push_extruded_rect(
     region: &mut HalfSpaces,
     axes: &LightAxes,
     origin: DVec3,
-    plane: &MapWindow,
+    plane: &MapRect,
 ) {
     let (min, max) = (plane.min, plane.max());
     for (axis, low, high) in [(axes.right(), min.x, max.x), (axes.up(), min.y, max.y)] {
@@ -99,10 +99,10 @@ mod tests {
         f64::from(*state) / f64::from(u32::MAX) * 2.0 - 1.0
     }
 
-    /// Interval and column together say what clipping the box by the four sides says, but for boxes that touch within 1e-9;
-    /// and the column does sort some out that the interval lets pass.
+    /// Interval and volume together say what clipping the box by the four sides says, but for boxes that touch within 1e-9;
+    /// and the volume does sort some out that the interval lets pass.
     #[test]
-    fn a_column_meets_what_reaches_into_it() {
+    fn an_extruded_rect_meets_what_reaches_into_it() {
         let mut state = 1;
         let (mut inside, mut sorted_out) = (0, 0);
         for _ in 0..8000 {
@@ -115,24 +115,24 @@ mod tests {
             let bounds = Aabb::new((middle - half).as_vec3(), (middle + half).as_vec3());
             let center = (axes.light_from_world * origin).truncate();
             let texel = DVec2::new(random(), random()).abs() * 0.1 + 0.01;
-            let window = MapWindow {
+            let rect = MapRect {
                 min: center - texel * 16.0,
                 texel,
                 map_size: 32,
             };
             let light: LightBox = axes.light_box(&bounds, origin);
-            let (min, max) = (window.min, window.max());
+            let (min, max) = (rect.min, rect.max());
             let interval =
                 light.min.truncate().cmple(max).all() && light.max.truncate().cmpge(min).all();
-            let met = interval && Column::new(&axes, origin, &window).meets(&bounds);
+            let met = interval && ExtrudedRect::new(&axes, origin, &rect).meets(&bounds);
             let clipped = |grow: f64| {
-                let grown = MapWindow {
-                    min: window.min - grow,
-                    texel: window.texel + grow / 16.0,
-                    ..window
+                let grown = MapRect {
+                    min: rect.min - grow,
+                    texel: rect.texel + grow / 16.0,
+                    ..rect
                 };
                 let mut region = HalfSpaces::default();
-                push_column(&mut region, &axes, origin, &grown);
+                push_extruded_rect(&mut region, &axes, origin, &grown);
                 let mut any = false;
                 region.visit_vertices(&bounds, |_| any = true);
                 any

@@ -39,9 +39,9 @@ pub(crate) enum Plan {
     /// All casters are drawn into it.
     All,
     /// The still part is copied into it, and the casters that are not of it drawn over.
-    OverStill,
+    OverStaticCache,
     /// The still part is drawn anew into a texture of its own first.
-    RenewStill,
+    RenewStaticCache,
 }
 
 impl Plan {
@@ -49,8 +49,8 @@ impl Plan {
     pub const fn passes(self) -> u32 {
         match self {
             Self::Keep => 0,
-            Self::All | Self::OverStill => 1,
-            Self::RenewStill => 2,
+            Self::All | Self::OverStaticCache => 1,
+            Self::RenewStaticCache => 2,
         }
     }
 }
@@ -66,7 +66,7 @@ struct Drawn {
 
 /// Casters count as still, and so does a view, after so many draws without change: what is animated at a quarter of the frame
 /// rate or faster never does.
-const STILL_AFTER: u32 = 4;
+const STATIC_AFTER_DRAWS: u32 = 4;
 
 /// A still part pays where drawing it again would cost more than copying a layer. So many texels of copying come to a draw, and
 /// so many to a triangle. In software a draw of a box costs as much as copying 100 000 (`cargo bench --bench cost`, "still
@@ -83,7 +83,7 @@ const LONGEST_REST: u32 = 256;
 
 /// What a layer of the map holds.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Content {
+pub(crate) struct LayerCache {
     /// None before the first pass.
     placement: Option<ViewPlacement>,
     /// Largest render coordinate that the depths were computed from: they carry its rounding, whatever the origin is by now.
@@ -91,12 +91,12 @@ pub(crate) struct Content {
     /// Draws since the view last changed.
     age: u32,
     drawn: Vec<Drawn>,
-    part: StillPart,
+    part: StaticCasterCache,
 }
 
 /// What the texture of a layer's still part holds.
 #[derive(Clone, Debug, Default)]
-struct StillPart {
+struct StaticCasterCache {
     /// Nothing while it is of no use.
     casters: Vec<Drawn>,
     /// Largest render coordinate that its depths were computed from.
@@ -108,7 +108,7 @@ struct StillPart {
     last_rest: u32,
 }
 
-impl Content {
+impl LayerCache {
     /// Is it of `view`, whatever the casters?
     pub fn is_of(&self, view: &ShadowView) -> bool {
         self.placement == Some(*view.placement())
@@ -137,13 +137,13 @@ impl Content {
         if self.part.lasts(draws, casters) {
             let part = worth(self.part.casters.iter().copied(), casters);
             return if still > part + texels {
-                Plan::RenewStill
+                Plan::RenewStaticCache
             } else {
-                Plan::OverStill
+                Plan::OverStaticCache
             };
         }
-        if self.age >= STILL_AFTER && self.part.resting == 0 && still > texels {
-            Plan::RenewStill
+        if self.age >= STATIC_AFTER_DRAWS && self.part.resting == 0 && still > texels {
+            Plan::RenewStaticCache
         } else {
             Plan::All
         }
@@ -155,8 +155,8 @@ impl Content {
         let now = draws.view.render_reach();
         match draws.plan {
             Plan::Keep => self.render_reach,
-            Plan::OverStill => self.part.render_reach.max(now),
-            Plan::All | Plan::RenewStill => now,
+            Plan::OverStaticCache => self.part.render_reach.max(now),
+            Plan::All | Plan::RenewStaticCache => now,
         }
     }
 
@@ -180,8 +180,8 @@ impl Content {
         match draws.plan {
             Plan::Keep => return,
             Plan::All => self.part.give_up(),
-            Plan::OverStill => self.part.served = self.part.served.saturating_add(1),
-            Plan::RenewStill => {
+            Plan::OverStaticCache => self.part.served = self.part.served.saturating_add(1),
+            Plan::RenewStaticCache => {
                 let mut part = std::mem::take(&mut self.part.casters);
                 part.clear();
                 part.extend(self.still(draws, casters));
@@ -210,11 +210,11 @@ impl Content {
         draws: &'a ViewDraws,
         casters: &'a FrameCasters<'_>,
     ) -> impl Iterator<Item = Drawn> + 'a {
-        unchanged(&self.drawn, draws, casters).filter(|was| was.age >= STILL_AFTER)
+        unchanged(&self.drawn, draws, casters).filter(|was| was.age >= STATIC_AFTER_DRAWS)
     }
 }
 
-impl StillPart {
+impl StaticCasterCache {
     /// Is there one, of which `draws` has every caster as it was?
     fn lasts(&self, draws: &ViewDraws, casters: &FrameCasters<'_>) -> bool {
         !self.casters.is_empty()

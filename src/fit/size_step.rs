@@ -16,7 +16,7 @@ const RUNGS: [f64; 5] = [
 const SHRINK_SLACK: f64 = 1.05;
 
 /// The smallest rung that is at least `size` (positive and finite).
-pub(crate) fn rung_up(size: f64) -> f64 {
+pub(crate) fn size_step_up(size: f64) -> f64 {
     // log2 may round to the next integer at a power of two; the octave below or above then serves as well.
     let octave = size.log2().floor().exp2();
     RUNGS
@@ -27,10 +27,10 @@ pub(crate) fn rung_up(size: f64) -> f64 {
 }
 
 /// The rung to use for `size` when `held` is in use: `held` while it is large enough and no smaller rung fits with slack.
-pub(crate) fn rung_with_hysteresis(size: f64, held: Option<f64>) -> f64 {
+pub(crate) fn size_step_with_hysteresis(size: f64, held: Option<f64>) -> f64 {
     match held {
-        Some(held) if held >= size && rung_up(size * SHRINK_SLACK) >= held => held,
-        _ => rung_up(size),
+        Some(held) if held >= size && size_step_up(size * SHRINK_SLACK) >= held => held,
+        _ => size_step_up(size),
     }
 }
 
@@ -42,9 +42,9 @@ mod tests {
     fn a_rung_holds_its_size_and_is_at_most_one_step_larger() {
         let mut size = 1e-9;
         while size < 1e9 {
-            let rung = rung_up(size);
+            let rung = size_step_up(size);
             assert!(rung >= size && rung <= size * 2.0_f64.powf(0.25) * (1.0 + 1e-12));
-            assert_eq!(rung_up(rung), rung, "a rung is its own rung");
+            assert_eq!(size_step_up(rung), rung, "a rung is its own rung");
             size *= 1.0137;
         }
     }
@@ -55,13 +55,13 @@ mod tests {
         let mut changes = 0;
         for step in 0..1000 {
             let size = 1.0 + 0.02 * (step as f64 * 0.7).sin();
-            let rung = rung_with_hysteresis(size, held);
+            let rung = size_step_with_hysteresis(size, held);
             changes += usize::from(held != Some(rung));
             held = Some(rung);
         }
         assert!(changes <= 2, "{changes}");
         assert!(
-            rung_with_hysteresis(0.5, held) < 0.6,
+            size_step_with_hysteresis(0.5, held) < 0.6,
             "a real shrink is taken"
         );
     }
