@@ -97,7 +97,7 @@ fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
         },
     );
 
-    // Depth passes are recorded as ever.
+    // Depth passes are recorded as ever, with one frame for both lights.
     let objects = objects(&gpu.device);
     let casters = casters(&gpu.device, &objects)?;
     let casters: Vec<&dyn ShadowCaster> = casters.iter().map(|caster| caster as _).collect();

@@ -16,8 +16,8 @@ use crate::support::camera;
 /// CPU time and allocations of a frame against the number of casters, all of them in the map.
 pub fn casters(stage: &Stage<'_>, most: u32) {
     let mut table = Growth::new(
-        "sun, one cascade: `frame` and `record` on the CPU against casters (all drawn; nothing changed; almost all culled), and the device \
-         time of all drawn as a ratio to 100 casters",
+        "sun, one cascade: `frame` and `record` on the CPU against casters (all drawn; nothing changed; almost all culled), and \
+         the device time of all drawn as a ratio to 100 casters",
         &[
             "casters",
             "drawn µs",
@@ -126,8 +126,7 @@ pub fn lights(stage: &Stage<'_>) {
     let half = crowd::half_side(500);
     let mut table = Growth::new(
         "point lights of 256 texels a side over 500 casters: one `frame` for all and the `record` of each on the CPU, and the \
-         device time as a \
-         ratio to one light",
+         device time as a ratio to one light",
         &[
             "lights",
             "drawn µs",

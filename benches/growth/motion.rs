@@ -115,8 +115,7 @@ impl Lit for Sun {
         encoder: &mut wgpu::CommandEncoder,
         casters: &[&dyn ShadowCaster],
     ) -> Counts {
-        let camera = stage::to_the_horizon(crowd::half_side(CASTERS));
-        let cameras = [camera];
+        let cameras = [stage::to_the_horizon(crowd::half_side(CASTERS))];
         let frame = stage::frame(casters, Coverage::Cameras(&cameras));
         let mut counts = Counts::default();
         counts.add(self.record(encoder, &frame));

@@ -84,6 +84,7 @@ impl Shadows {
         casters: &[&dyn ShadowCaster],
         budget: Option<u32>,
     ) -> Result<(), Box<dyn Error>> {
+        // One frame for all lights: the casters are asked once what they are.
         let frame = self.scene.frame(&ShadowFrameDescriptor {
             origin: DVec3::ZERO,
             coverage: Coverage::Cameras(&[camera.for_shadows()]),
