@@ -18,9 +18,8 @@ fn shadow_receiver_normal_offset(
     let growth = texels * (abs(plane.x) + abs(plane.y)) * max(dot(shadow_w_row(view).xyz, normal), 0.0);
     let distance = offset / (1.0 - min(growth, 0.9)) + view.offset_world;
     // Where the kernel spans the surface's horizon no offset frees it: such a place is lit, by a depth nearer than any map's.
-    if growth >= 0.9 || distance >= shadow_light_height(view, relative, normal) {
-        return shadow_receiver_at(view, position, relative, vec2<f32>(0.0), 2.0);
-    }
-    let moved = relative + normal * select(0.0, distance, distance > 0.0);
-    return shadow_receiver_at(view, position, moved, vec2<f32>(0.0), view.depth_error);
+    let hopeless = (growth >= 0.9) | (distance >= shadow_light_height(view, relative, normal));
+    let moved = relative + normal * select(0.0, distance, (distance > 0.0) & !hopeless);
+    let depth_offset = select(view.depth_error, 2.0, hopeless);
+    return shadow_receiver_at(view, position, moved, vec2<f32>(0.0), depth_offset);
 }

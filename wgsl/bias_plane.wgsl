@@ -20,12 +20,10 @@ fn shadow_receiver_plane(view: ShadowView, position: vec3<f32>, normal: vec3<f32
     let moved = offset * dot(normal, normal);
     let plane = surface - moved * vec3<f32>(view.plane_across.w, view.plane_down.w, view.plane_depth.w);
     // A plane seen edge on has no gradient, and neither has a normal that is zero or not a number.
-    if !(abs(plane.z) > 0.0) {
-        return shadow_receiver_at(view, position, relative, vec2<f32>(0.0), view.depth_error);
-    }
+    let has_gradient = abs(plane.z) > 0.0;
     let limit = vec2<f32>(SHADOW_MAX_GRADIENT);
-    let gradient = clamp(-plane.xy / plane.z, -limit, limit);
+    let gradient = select(vec2<f32>(0.0), clamp(-plane.xy / plane.z, -limit, limit), has_gradient);
     let steepness = abs(gradient.x) + abs(gradient.y);
     let slack = view.lateral_error * steepness + view.depth_error;
-    return shadow_receiver_at(view, position, lifted, gradient, slack);
+    return shadow_receiver_at(view, position, select(relative, lifted, has_gradient), gradient, slack);
 }

@@ -71,8 +71,13 @@ struct ShadowReceiver {
 fn shadow_view_holds(view: ShadowView, position: vec3<f32>) -> bool {
     let relative = position - view.anchor;
     let distance_squared = dot(relative, relative);
-    let reached = distance_squared <= view.range * view.range
-        && -dot(relative, view.light.xyz) >= view.cone_cosine * sqrt(distance_squared);
+    // The cone stands before the range for the sake of Mesa's software Vulkan driver (seen in 22.3, which Debian 12 has). It
+    // looks for branches that depend on uniforms alone, and notes each member of a uniform buffer that it meets in a condition
+    // before the first value that varies; for the fourth buffer of a stage and those after it, it writes the note past the end
+    // of its table, and crashes. Of the cone it meets the place first, of `a <= b` the right side. The biases select instead of
+    // branching for the same reason.
+    let reached = -dot(relative, view.light.xyz) >= view.cone_cosine * sqrt(distance_squared)
+        && distance_squared <= view.range * view.range;
     return reached && shadow_view_covers(view, position);
 }
 

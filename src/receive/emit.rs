@@ -160,7 +160,8 @@ fn blended_lookup(name: &str, receiver: &Receiver<'_>) -> String {
     )
 }
 
-/// The mean over directions around the place's own, each on its own face.
+/// The mean over directions around the place's own, each on its own face. What varies is the comparison's left side, by `>=`, for
+/// the sake of the driver that `shadow_view_holds` tells of.
 fn mean_lookup(
     name: &str,
     receiver: &Receiver<'_>,
@@ -179,14 +180,14 @@ fn mean_lookup(
     format!(
         "    let light = shadow_views_{name}[{first}];
     let from_light = position - light.anchor;
-    if length(from_light) > light.range {{
+    if length(from_light) >= light.range {{
         return 1.0;
     }}
     let radius = {offsets}_radius(light, position);
     var lit = 0.0;
     for (var i = 0u; i < {samples}u; i++) {{
         let offset = {offsets}(i) * radius;
-        let place = light.anchor + {meets};
+        let place = {meets} + light.anchor;
         let view = shadow_view_{name}({argument}place);
         if view == {count}u {{
             lit += 1.0;

@@ -1,6 +1,7 @@
 //! One module per thing that could be wrong.
 
 mod any_input;
+mod beside_engine_buffers;
 mod binding_errors;
 mod blending;
 mod boxes;

@@ -2,11 +2,13 @@
 
 pub mod ask;
 pub mod camera;
+pub mod child;
 pub mod cube_pair;
 pub mod figures;
 pub mod frames;
 pub mod golden;
 pub mod gpu;
+pub mod lights;
 pub mod local_truth;
 pub mod multiview;
 pub mod picture;

@@ -1,0 +1,388 @@
+//! The emitted functions in render pipelines whose other bind groups hold uniform buffers of the engine's: whatever buffers
+//! come before the lights', a picture comes out, and the same one.
+//!
+//! Drivers have crashed here, so the drawing is done in a process of its own.
+
+use std::collections::BTreeSet;
+
+use image::RgbaImage;
+use wgpu_shadows::{Bias, Filter, ShadowBindings, ShadowBindingsDescriptor, shader};
+
+use crate::support::child;
+use crate::support::gpu::{Gpu, gpu};
+use crate::support::lights::{Kind, Light, stage};
+use crate::support::picture::{COLOR, color_pass, color_target};
+use crate::support::readback;
+
+const SIZE: u32 = 24;
+/// A set of lights by their kinds.
+type Set = Vec<Kind>;
+
+/// Each kind twice, and sets of different kinds, among them one with all.
+fn sets() -> Vec<Set> {
+    let [sun, cascades, _, spot, lamp, spots, lamps] = Kind::ALL;
+    let alike = Kind::ALL.map(|kind| vec![kind; 2]);
+    let mixed = [
+        vec![sun, spot, lamp],
+        vec![cascades, spots, lamps, spot],
+        vec![spot; 4],
+        Kind::ALL.to_vec(),
+    ];
+    alike.into_iter().chain(mixed).collect()
+}
+
+/// The default filter, the sampler's own, and for sets of cubes the ones that look along directions.
+fn filters(set: &Set) -> Vec<Filter> {
+    let mut filters = vec![Filter::default(), Filter::Hardware];
+    if set.iter().all(|kind| kind.has_cube()) {
+        filters.push(Filter::DirectionStar { radius: 0.05 });
+    }
+    filters
+}
+
+/// Group of the lights and number of the engine's buffers in each group before it: all groups that WebGPU's devices have at
+/// least, and two lights of one kind everywhere from first to eleventh of the stage's buffers.
+const LAYOUTS: [(u32, u32); 6] = [(0, 0), (1, 1), (2, 1), (1, 3), (3, 1), (3, 3)];
+
+/// The layouts whose buffers a stage can have.
+fn layouts(set: &Set) -> impl Iterator<Item = (u32, u32)> {
+    let most = wgpu::Limits::default().max_uniform_buffers_per_shader_stage;
+    let left = most - set.len() as u32;
+    LAYOUTS
+        .into_iter()
+        .filter(move |(group, buffers)| group * buffers <= left)
+}
+
+/// The number of pictures that [`draw_all`] draws.
+fn combinations() -> usize {
+    let of_set = |set: &Set| filters(set).len() * layouts(set).count();
+    sets().iter().map(of_set).sum()
+}
+
+#[test]
+fn any_lights_draw_behind_any_buffers() {
+    let name = "suite::beside_engine_buffers::any_lights_draw_behind_any_buffers";
+    if let Some(drawn) = child::counted(name, draw_all) {
+        assert_eq!(drawn, combinations());
+    }
+}
+
+fn draw_all() -> usize {
+    let gpu = gpu();
+    let stage = stage(gpu);
+    let mut drawn = 0;
+    for set in sets() {
+        for filter in filters(&set) {
+            let lights: Vec<_> = set
+                .iter()
+                .map(|kind| (*kind, kind.lit(gpu, &stage, filter, Bias::Auto)))
+                .collect();
+            let mut wanted = None;
+            for (group, buffers) in layouts(&set) {
+                // So that the last line before a crash tells where it was.
+                let name = format!("{set:?} {filter:?} in group {group}, {buffers} before");
+                println!("{name}");
+                let seen = picture(gpu, &lights, group, buffers);
+                let wanted = wanted.get_or_insert_with(|| seen.clone());
+                assert!(seen == *wanted, "{name}: another picture");
+                drawn += 1;
+            }
+            assert_both_greys(&wanted.expect("a picture"), &format!("{set:?} {filter:?}"));
+        }
+    }
+    drawn
+}
+
+/// The mean visibility of the lights over the floor, seen from above.
+fn picture(gpu: &Gpu, lights: &[(Kind, Box<dyn Light>)], group: u32, buffers: u32) -> RgbaImage {
+    let names: Vec<_> = ('a'..).take(lights.len()).map(String::from).collect();
+    let sources: Vec<_> = names
+        .iter()
+        .zip(lights)
+        .map(|(name, (_, light))| (name.as_str(), light.source()))
+        .collect();
+    let descriptor = ShadowBindingsDescriptor {
+        group,
+        lights: &sources,
+        ..Default::default()
+    };
+    let bindings = ShadowBindings::new(&gpu.device, &descriptor).expect("valid bindings");
+    let calls: Vec<_> = names
+        .iter()
+        .zip(lights)
+        .map(|(name, (kind, _))| kind.call(name, "position", "vec3<f32>(0.0, 1.0, 0.0)"))
+        .collect();
+    let own: Vec<_> = (0..group)
+        .flat_map(|group| (0..buffers).map(move |binding| (group, binding)))
+        .collect();
+    let declarations: String = own
+        .iter()
+        .map(|(group, binding)| {
+            let slot = format!("@group({group}) @binding({binding})");
+            format!("{slot} var<uniform> own_{group}_{binding}: vec4<f32>;\n")
+        })
+        .collect();
+    // The engine's buffers hold zeros, which a compiler cannot know.
+    let zeros: String = own
+        .iter()
+        .map(|(group, binding)| format!(" + own_{group}_{binding}.x"))
+        .collect();
+    let source = format!(
+        "{}{declarations}{}",
+        bindings.wgsl(),
+        stages(&format!(
+            "({}) / {}.0{zeros}",
+            calls.join(" + "),
+            lights.len()
+        ))
+    );
+    let own_layout = own_layout(gpu, buffers);
+    let own_group = own_group(gpu, &own_layout, buffers);
+    let mut layouts = vec![Some(&own_layout); group as usize];
+    layouts.push(Some(bindings.layout()));
+    let pipeline = pipeline(gpu, &source, &layouts);
+    let mut groups = vec![&own_group; group as usize];
+    groups.push(bindings.bind_group());
+    draw(gpu, &pipeline, &groups)
+}
+
+/// A vertex stage that covers the target, and a fragment stage that shows `value`, a WGSL expression over `position` on the
+/// floor.
+fn stages(value: &str) -> String {
+    format!(
+        "
+@vertex
+fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {{
+    let corner = vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0;
+    return vec4<f32>(corner, 0.0, 1.0);
+}}
+
+@fragment
+fn fragment(@builtin(position) pixel: vec4<f32>) -> @location(0) vec4<f32> {{
+    let place = pixel.xy * (3.8 / {SIZE}.0) - 1.9;
+    let position = vec3<f32>(place.x, 0.0, place.y);
+    return vec4<f32>(vec3<f32>({value}), 1.0);
+}}
+"
+    )
+}
+
+fn draw(gpu: &Gpu, pipeline: &wgpu::RenderPipeline, groups: &[&wgpu::BindGroup]) -> RgbaImage {
+    let target = color_target(gpu, SIZE);
+    let mut encoder = gpu.encoder();
+    {
+        let mut pass = color_pass(&mut encoder, &target);
+        pass.set_pipeline(pipeline);
+        for (index, group) in (0..).zip(groups) {
+            pass.set_bind_group(index, *group, &[]);
+        }
+        pass.draw(0..3, 0..1);
+    }
+    gpu.submit(encoder);
+    readback::rgba8(gpu, &target)
+}
+
+/// Schemes of bias, as an engine with bindings of its own calls them.
+const BIASES: [(Bias, &str); 3] = [
+    (Bias::Auto, "plane"),
+    (Bias::NormalOffset, "normal_offset"),
+    (
+        Bias::Manual {
+            constant: 0.02,
+            slope: 0.1,
+        },
+        "manual",
+    ),
+];
+
+/// Uniform buffers of the engine's before the view.
+const BEFORE_OWN_VIEW: std::ops::Range<u32> = 0..9;
+
+/// The modules with one view as a uniform of the engine's own, behind so many others.
+#[test]
+fn own_views_draw_behind_any_buffers() {
+    let name = "suite::beside_engine_buffers::own_views_draw_behind_any_buffers";
+    if let Some(drawn) = child::counted(name, draw_own) {
+        assert_eq!(drawn, 2 * BIASES.len() * BEFORE_OWN_VIEW.count());
+    }
+}
+
+fn draw_own() -> usize {
+    let gpu = gpu();
+    let stage = stage(gpu);
+    let [sun, _, _, spot, ..] = Kind::ALL;
+    let mut drawn = 0;
+    for kind in [sun, spot] {
+        for (bias, scheme) in BIASES {
+            let light = kind.lit(gpu, &stage, Filter::Nearest, bias);
+            let mut wanted = None;
+            for before in BEFORE_OWN_VIEW {
+                let name = format!("{kind:?} {bias:?} behind {before}");
+                println!("{name}");
+                let seen = own_picture(gpu, &*light, scheme, before);
+                let wanted = wanted.get_or_insert_with(|| seen.clone());
+                assert!(seen == *wanted, "{name}: another picture");
+                drawn += 1;
+            }
+            assert_both_greys(&wanted.expect("a picture"), scheme);
+        }
+    }
+    drawn
+}
+
+fn own_picture(gpu: &Gpu, light: &dyn Light, scheme: &str, before: u32) -> RgbaImage {
+    let device = &gpu.device;
+    let bias = format!("bias_{scheme}");
+    let modules = shader::compose(&[&bias, "filter_nearest"]).expect("modules of the table");
+    let zeros: String = (0..before)
+        .map(|index| format!(" + own_{index}.x"))
+        .collect();
+    let own: String = (0..before)
+        .map(|index| format!("@group(0) @binding({index}) var<uniform> own_{index}: vec4<f32>;\n"))
+        .collect();
+    let source = format!(
+        "{modules}{own}
+@group(0) @binding({before}) var<uniform> own_view: ShadowView;
+@group(1) @binding(0) var own_map: texture_depth_2d_array;
+@group(1) @binding(1) var own_sampler: sampler;
+
+fn own_light(position: vec3<f32>, normal: vec3<f32>) -> f32 {{
+    let receiver = shadow_receiver_{scheme}(own_view, position, normal);
+    if !receiver.inside {{
+        return 1.0;
+    }}
+    return shadow_filter_nearest(own_map, own_sampler, receiver);
+}}
+{}",
+        stages(&format!(
+            "own_light(position, vec3<f32>(0.0, 1.0, 0.0)){zeros}"
+        ))
+    );
+    let buffers = own_layout(gpu, before + 1);
+    let texture = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Depth,
+        view_dimension: wgpu::TextureViewDimension::D2Array,
+        multisampled: false,
+    };
+    let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering);
+    let entries = [(0, texture), (1, sampler)].map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty,
+        count: None,
+    });
+    let map = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("the engine's own"),
+        entries: &entries,
+    });
+    let zero = gpu.buffer(&[0.0_f32; 4], wgpu::BufferUsages::UNIFORM);
+    let entries: Vec<_> = (0..=before)
+        .map(|binding| wgpu::BindGroupEntry {
+            binding,
+            resource: if binding < before {
+                zero.as_entire_binding()
+            } else {
+                light.uniform_buffer().as_entire_binding()
+            },
+        })
+        .collect();
+    let buffer_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("the engine's own"),
+        layout: &buffers,
+        entries: &entries,
+    });
+    let map_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("the engine's own"),
+        layout: &map,
+        entries: &[
+            wgpu::BindGroupEntry {
+                binding: 0,
+                resource: wgpu::BindingResource::TextureView(light.texture_view()),
+            },
+            wgpu::BindGroupEntry {
+                binding: 1,
+                resource: wgpu::BindingResource::Sampler(
+                    &device.create_sampler(&Default::default()),
+                ),
+            },
+        ],
+    });
+    let pipeline = pipeline(gpu, &source, &[Some(&buffers), Some(&map)]);
+    draw(gpu, &pipeline, &[&buffer_group, &map_group])
+}
+
+/// A picture of shadow and light proves something.
+fn assert_both_greys(picture: &RgbaImage, name: &str) {
+    let greys: BTreeSet<_> = picture.pixels().map(|pixel| pixel.0[0]).collect();
+    assert!(greys.len() > 1, "{name}: {greys:?}");
+}
+
+fn own_layout(gpu: &Gpu, buffers: u32) -> wgpu::BindGroupLayout {
+    let entries: Vec<_> = (0..buffers)
+        .map(|binding| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty: wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Uniform,
+                has_dynamic_offset: false,
+                min_binding_size: None,
+            },
+            count: None,
+        })
+        .collect();
+    gpu.device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("the engine's own"),
+            entries: &entries,
+        })
+}
+
+fn own_group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, buffers: u32) -> wgpu::BindGroup {
+    let zeros = gpu.buffer(&[0.0_f32; 4], wgpu::BufferUsages::UNIFORM);
+    let entries: Vec<_> = (0..buffers)
+        .map(|binding| wgpu::BindGroupEntry {
+            binding,
+            resource: zeros.as_entire_binding(),
+        })
+        .collect();
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("the engine's own"),
+        layout,
+        entries: &entries,
+    })
+}
+
+fn pipeline(
+    gpu: &Gpu,
+    source: &str,
+    layouts: &[Option<&wgpu::BindGroupLayout>],
+) -> wgpu::RenderPipeline {
+    let device = &gpu.device;
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: None,
+        bind_group_layouts: layouts,
+        immediate_size: 0,
+    });
+    let module = gpu.shader(source);
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: None,
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("vertex"),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: None,
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("fragment"),
+            compilation_options: Default::default(),
+            targets: &[Some(COLOR.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}

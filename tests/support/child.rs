@@ -1,0 +1,29 @@
+//! Tests in a process of their own: a driver that crashes there fails one test, and the run goes on.
+
+use std::process::Command;
+
+const MARK: &str = "SHADOW_TEST_CHILD";
+
+/// Runs `body` in a child process and returns the count that it came to.
+///
+/// `test` is the full name of the test that calls this: the child is this very binary, told to run that test alone, and there
+/// the call runs `body`. What the child wrote is part of the panic where it fails, crashes, or runs nothing.
+pub fn counted(test: &str, body: impl FnOnce() -> usize) -> Option<usize> {
+    if std::env::var_os(MARK).is_some() {
+        println!("\n{MARK} {}", body());
+        return None;
+    }
+    let binary = std::env::current_exe().expect("the path of the test binary");
+    let output = Command::new(binary)
+        .args([test, "--exact", "--nocapture", "--test-threads=1"])
+        .env(MARK, "1")
+        .output()
+        .expect("the test binary starts");
+    let text = String::from_utf8_lossy(&output.stdout);
+    let told = || format!("{text}{}", String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{}\n{}", output.status, told());
+    let count = text
+        .lines()
+        .find_map(|line| line.strip_prefix(MARK)?.trim().parse().ok());
+    Some(count.unwrap_or_else(|| panic!("the child ran nothing\n{}", told())))
+}
