@@ -17,7 +17,7 @@ fn shadow_filter_penumbra_turned(
 // 32 well mixed bits of a cell: primes near 2^32 times the golden ratio and of xxHash (Collet 2012) join its two numbers, and
 // the finaliser is "lowbias32" (Wellons 2018).
 fn shadow_hash(cell: vec2<u32>) -> u32 {
-    var bits = cell.x * 0x9e3779b1u ^ cell.y * 0x85ebca77u;
+    var bits = (cell.x * 0x9e3779b1u) ^ (cell.y * 0x85ebca77u);
     bits = (bits ^ (bits >> 16u)) * 0x7feb352du;
     bits = (bits ^ (bits >> 15u)) * 0x846ca68bu;
     return bits ^ (bits >> 16u);

@@ -1,11 +1,9 @@
 //! What `ShadowBindings` emits, for every kind of light, every filter and every bias, alone and in company.
 
-use wgpu_shadows::{
-    Bias, DirectionalShadow, DirectionalShadowDescriptor, Filter, OmniShadow, OmniShadowDescriptor,
-    ShadowBindings, ShadowBindingsDescriptor, ShadowSource, SpotShadow, SpotShadowDescriptor,
-};
+use wgpu_shadows::{Bias, Filter, ShadowBindings, ShadowBindingsDescriptor, ShadowSource};
 
 use crate::support::gpu::gpu;
+use crate::support::lights::{Kind, Light};
 use crate::support::wgsl;
 
 const BIASES: [Bias; 3] = [
@@ -17,11 +15,11 @@ const BIASES: [Bias; 3] = [
     },
 ];
 
-/// Filters that every kind of light takes.
-fn planar() -> Vec<Filter> {
-    let soft = Filter::Penumbra { light_size: 0.01 };
-    [&Filter::ALL[..], &[soft]].concat()
-}
+/// Filters that every kind of light takes beside [`Filter::ALL`].
+const SOFT: [Filter; 2] = [
+    Filter::Penumbra { light_size: 0.01 },
+    Filter::PenumbraTurned { light_size: 0.01 },
+];
 
 /// Filters that only point lights take.
 const DIRECTIONS: [Filter; 2] = [
@@ -29,79 +27,25 @@ const DIRECTIONS: [Filter; 2] = [
     Filter::DirectionStar { radius: 0.1 },
 ];
 
-enum Shadow {
-    Sun(Box<DirectionalShadow>),
-    Spot(SpotShadow),
-    Omni(OmniShadow),
-}
-
-struct Light {
+struct Named {
     name: String,
-    shadow: Shadow,
+    kind: Kind,
+    light: Box<dyn Light>,
 }
 
-impl Light {
-    fn source(&self) -> ShadowSource<'_> {
-        match &self.shadow {
-            Shadow::Sun(sun) => sun.source(),
-            Shadow::Spot(spot) => spot.source(),
-            Shadow::Omni(omni) => omni.source(),
-        }
-    }
-}
-
-/// A light for every filter and bias that `make` accepts. Maps are one texel: only the WGSL is of interest.
-fn lights(kind: &str, filters: &[Filter], make: impl Fn(Filter, Bias) -> Shadow) -> Vec<Light> {
-    let with = |filter: Filter, bias: Bias| Light {
-        name: format!("{kind} {filter:?} {bias:?}"),
-        shadow: make(filter, bias),
-    };
+/// A light of a kind for every filter and bias that it takes. Maps are one texel: only the WGSL is of interest.
+fn every_way(kind: Kind) -> Vec<Named> {
+    let directions: &[Filter] = if kind.has_cube() { &DIRECTIONS } else { &[] };
+    let filters = [&Filter::ALL[..], &SOFT, directions].concat();
     filters
         .iter()
-        .flat_map(|filter| BIASES.map(|bias| with(*filter, bias)))
+        .flat_map(|filter| BIASES.map(|bias| (*filter, bias)))
+        .map(|(filter, bias)| Named {
+            name: format!("{kind:?} {filter:?} {bias:?}"),
+            kind,
+            light: kind.blank(gpu(), 1, filter, bias),
+        })
         .collect()
-}
-
-fn suns(cascades: u32) -> Vec<Light> {
-    lights(&format!("sun of {cascades}"), &planar(), |filter, bias| {
-        let descriptor = DirectionalShadowDescriptor {
-            map_size: 1,
-            cascades,
-            filter,
-            bias,
-            ..Default::default()
-        };
-        let sun = DirectionalShadow::new(&gpu().device, &descriptor);
-        Shadow::Sun(Box::new(sun.expect("a valid sun")))
-    })
-}
-
-fn spots() -> Vec<Light> {
-    lights("spot", &planar(), |filter, bias| {
-        let descriptor = SpotShadowDescriptor {
-            map_size: 1,
-            filter,
-            bias,
-            ..Default::default()
-        };
-        Shadow::Spot(SpotShadow::new(&gpu().device, &descriptor).expect("a valid spot"))
-    })
-}
-
-fn omnis() -> Vec<Light> {
-    lights(
-        "lamp",
-        &[&planar()[..], &DIRECTIONS].concat(),
-        |filter, bias| {
-            let descriptor = OmniShadowDescriptor {
-                map_size: 1,
-                filter,
-                bias,
-                ..Default::default()
-            };
-            Shadow::Omni(OmniShadow::new(&gpu().device, &descriptor).expect("a valid lamp"))
-        },
-    )
 }
 
 fn emitted(group: u32, lights: &[(&str, ShadowSource<'_>)]) -> String {
@@ -115,9 +59,9 @@ fn emitted(group: u32, lights: &[(&str, ShadowSource<'_>)]) -> String {
     bindings.wgsl().to_owned()
 }
 
-/// naga accepts the text, all its bindings are in `group` at 0, 1, 2 and so on, and there is a function for each name that
-/// takes two vectors and returns a float.
-fn check(text: &str, group: u32, names: &[&str]) -> Result<(), String> {
+/// naga and WGSL's grammar accept the text, all its bindings are in `group` at 0, 1, 2 and so on, and there is a function for
+/// each light that takes two vectors, after an index where the light is a pool's, and returns a float.
+fn check(text: &str, group: u32, lights: &[(&str, Kind)]) -> Result<(), String> {
     let module = wgsl::validate(text)?;
     let mut bindings = Vec::new();
     for (_, variable) in module.global_variables.iter() {
@@ -131,7 +75,7 @@ fn check(text: &str, group: u32, names: &[&str]) -> Result<(), String> {
     if bindings != (0..bindings.len() as u32).collect::<Vec<_>>() {
         return Err(format!("bindings {bindings:?}"));
     }
-    for name in names {
+    for (name, kind) in lights {
         let wanted = format!("shadow_{name}");
         let mut functions = module.functions.iter().map(|(_, function)| function);
         let found = functions.find(|function| function.name.as_deref() == Some(&wanted));
@@ -144,8 +88,7 @@ fn check(text: &str, group: u32, names: &[&str]) -> Result<(), String> {
             module.types[result.ty].inner,
             naga::TypeInner::Scalar(naga::Scalar::F32)
         );
-        let takes_vectors = function.arguments.iter().all(|argument| {
-            let inner = &module.types[argument.ty].inner;
+        let is_vector = |inner: &naga::TypeInner| {
             matches!(
                 inner,
                 naga::TypeInner::Vector {
@@ -153,8 +96,23 @@ fn check(text: &str, group: u32, names: &[&str]) -> Result<(), String> {
                     scalar: naga::Scalar::F32
                 }
             )
-        });
-        if !(returns_float && takes_vectors && function.arguments.len() == 2) {
+        };
+        let arguments: Vec<_> = function
+            .arguments
+            .iter()
+            .map(|argument| &module.types[argument.ty].inner)
+            .collect();
+        let takes = match (kind, &arguments[..]) {
+            (Kind::Spots | Kind::Lamps, [index, position, normal]) => {
+                let is_index = matches!(index, naga::TypeInner::Scalar(naga::Scalar::U32));
+                is_index && is_vector(position) && is_vector(normal)
+            }
+            (Kind::Sun { .. } | Kind::Spot | Kind::Lamp, [position, normal]) => {
+                is_vector(position) && is_vector(normal)
+            }
+            _ => false,
+        };
+        if !(returns_float && takes) {
             return Err(format!("{wanted} has another signature"));
         }
     }
@@ -168,10 +126,10 @@ fn report(failures: &[String]) {
 #[test]
 fn one_light_validates_in_every_group() {
     let mut failures = Vec::new();
-    for light in [suns(1), suns(4), spots(), omnis()].iter().flatten() {
+    for light in Kind::ALL.into_iter().flat_map(every_way) {
         for group in 0..=3 {
-            let text = emitted(group, &[("lamp", light.source())]);
-            if let Err(error) = check(&text, group, &["lamp"]) {
+            let text = emitted(group, &[("lamp", light.light.source())]);
+            if let Err(error) = check(&text, group, &[("lamp", light.kind)]) {
                 failures.push(format!("{} in group {group}: {error}", light.name));
             }
         }
@@ -182,12 +140,14 @@ fn one_light_validates_in_every_group() {
 /// Shared modules appear once, samplers are shared, and names do not collide, for every two lights of different kinds.
 #[test]
 fn two_lights_validate() {
-    let (suns, others) = (suns(4), [spots(), omnis()]);
+    let [_, _, sun, others @ ..] = Kind::ALL;
+    let suns = every_way(sun);
     let mut failures = Vec::new();
-    for sun in &suns {
-        for other in others.iter().flatten() {
-            let text = emitted(1, &[("sun", sun.source()), ("other_lamp", other.source())]);
-            if let Err(error) = check(&text, 1, &["sun", "other_lamp"]) {
+    for other in others.into_iter().flat_map(every_way) {
+        for sun in &suns {
+            let lights = [("sun", sun), ("other_lamp", &other)];
+            let text = emitted(1, &lights.map(|(name, light)| (name, light.light.source())));
+            if let Err(error) = check(&text, 1, &lights.map(|(name, light)| (name, light.kind))) {
                 failures.push(format!("{} with {}: {error}", sun.name, other.name));
             }
         }

@@ -23,3 +23,4 @@ pub mod table;
 pub mod texture_bytes;
 pub mod watched;
 pub mod wgsl;
+pub mod wgsl_operators;

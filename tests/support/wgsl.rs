@@ -2,8 +2,15 @@
 
 use std::collections::BTreeSet;
 
-/// Parses and validates; the error is naga's own, with the place in the source.
+use crate::support::wgsl_operators::mixed_operators;
+
+/// Parses and validates; the error is naga's own, with the place in the source. Beyond naga, operators must be apart by
+/// parentheses where WGSL's grammar wants them, as browsers insist.
 pub fn validate(source: &str) -> Result<naga::Module, String> {
+    let faults = mixed_operators(source);
+    if !faults.is_empty() {
+        return Err(faults.join("\n"));
+    }
     let module =
         naga::front::wgsl::parse_str(source).map_err(|error| error.emit_to_string(source))?;
     naga::valid::Validator::new(
