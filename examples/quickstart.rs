@@ -35,7 +35,7 @@ struct Surface {
 }
 
 @fragment fn fragment(surface: Surface) -> @location(0) vec4<f32> {
-    let normal = shadow_geometric_normal(surface.position);
+    let normal = shadow_geometric_normal(surface.position, frame.eye.xyz - surface.position);
     let visibility = shadow_sun(surface.position, normal);
 
     let toward_light = frame.toward_light.xyz;

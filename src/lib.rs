@@ -58,7 +58,14 @@
 //! Ndc depth is affine in map coordinates over a plane, for orthographic and perspective views alike. With [`Bias::Auto`] the
 //! shader carries the receiver's tangent plane into texel space, gathers raw depths and compares each with the plane's own depth
 //! at that texel, clamped so that it never lies farther from the light than the receiver. What is left is rounding: see
-//! [`Bias`]. The normal must be the geometric one, of unit length; `shadow_geometric_normal(position)` makes it from derivatives.
+//! [`Bias`]. The normal must be the geometric one, of unit length, on the side that is shaded;
+//! `shadow_geometric_normal(position, toward_viewer)` makes it from derivatives.
+//!
+//! `toward_viewer` tells the side, which derivatives cannot: under a projection that mirrors (a planar reflection, a target with y
+//! downward, a captured cube) they turn around. It is any vector from the surface to the side that is looked at, of any length
+//! but zero: `camera_position - position` for a perspective camera, the reverse of the direction of view for an orthographic
+//! one. An interpolated shading normal will do too, but errs at silhouettes, where it leans behind the facet. A normal on the
+//! wrong side pushes receivers into their own surface, which shows as acne all over.
 
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]

@@ -38,7 +38,7 @@ fn lit_town(surface: Surface, normal: vec3<f32>) -> vec3<f32> {
 @fragment
 fn fragment(surface: Surface) -> @location(0) vec4<f32> {
     // Domes are shaded as round and are made of flat triangles; shadows want those.
-    let normal = shadow_geometric_normal(surface.position);
+    let normal = shadow_geometric_normal(surface.position, frame.eye - surface.position);
     return vec4<f32>(in_the_haze(lit_town(surface, normal), surface.position), 1.0);
 }
 
@@ -66,7 +66,7 @@ fn fragment_cascades(surface: Surface) -> @location(0) vec4<f32> {
         vec3<f32>(1.0, 0.8, 0.15),
         vec3<f32>(0.6, 0.6, 0.6),
     );
-    let normal = shadow_geometric_normal(surface.position);
+    let normal = shadow_geometric_normal(surface.position, frame.eye - surface.position);
     let color = lit_town(surface, normal);
     let tint = tints[shadow_view_sun(surface.position)];
     return vec4<f32>(tint * (0.12 + 0.88 * dot(color, vec3<f32>(0.3, 0.5, 0.2))), 1.0);

@@ -93,7 +93,7 @@ fn base_color(uv: vec2<f32>) -> vec4<f32> {
 @fragment
 fn shade(surface: Surface) -> @location(0) vec4<f32> {
     let base = base_color(surface.uv);
-    let facet = shadow_geometric_normal(surface.position);
+    let facet = shadow_geometric_normal(surface.position, -surface.position);
     if base.a < material.alpha_cutoff {
         discard;
     }
@@ -123,7 +123,7 @@ fn shade(surface: Surface) -> @location(0) vec4<f32> {
 @fragment
 fn visibility(surface: Surface) -> @location(0) vec4<f32> {
     let alpha = base_color(surface.uv).a;
-    let facet = shadow_geometric_normal(surface.position);
+    let facet = shadow_geometric_normal(surface.position, -surface.position);
     if alpha < material.alpha_cutoff {
         discard;
     }

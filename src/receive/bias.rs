@@ -16,8 +16,9 @@ const VERTEX_SNAP_TEXELS: f64 = 1.0 / 256.0;
 /// The bias of a light.
 ///
 /// Too little bias shows as *acne*: stripes or speckles of shadow on lit surfaces. Too much shows as *peter-panning*: light
-/// under the feet of things, shadows that begin a step away. Normals are geometric (`shadow_geometric_normal` makes them from
-/// derivatives); smooth shading normals bring acne back by the angle between facets.
+/// under the feet of things, shadows that begin a step away. Normals are geometric and on the side that is shaded
+/// (`shadow_geometric_normal(position, toward_viewer)` makes them from derivatives); smooth shading normals bring acne back by the
+/// angle between facets, and normals on the other side bring it back everywhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Bias {

@@ -70,7 +70,13 @@ impl Default for ShadowBindingsDescriptor<'_> {
 /// The WGSL has one function per light, `shadow_NAME(position: vec3<f32>, normal: vec3<f32>) -> f32` (for pools
 /// `shadow_NAME(index: u32, position: vec3<f32>, normal: vec3<f32>) -> f32`): visibility in [0, 1] of
 /// the light from `position` (render space) on a surface with geometric normal `normal` (unit length, on the side that is
-/// shaded); and `shadow_geometric_normal(position)`. Where the map says nothing, beyond its sides or its far plane, it is 1.
+/// shaded). Where the map says nothing, beyond its sides or its far plane, it is 1.
+///
+/// `shadow_geometric_normal(position: vec3<f32>, toward_viewer: vec3<f32>) -> vec3<f32>` is such a normal, from screen-space
+/// derivatives, for fragment shaders in uniform control flow. `toward_viewer` is a vector of any length but zero from the surface
+/// to the side that is looked at: `camera_position - position`, or the reverse of an orthographic camera's direction. An
+/// interpolated shading normal will do too, but errs at silhouettes. Where the camera's projection mirrors does not matter.
+///
 /// `shadow_view_NAME(position)` (for pools with the index in front) tells which view serves a place, for a tint of cascades or
 /// faces: the number of the layer, or the number of layers where none does.
 /// The variables `shadow_map_NAME` and `shadow_views_NAME` are the light's own texture and `array<ShadowView, N>`, for engines

@@ -1,7 +1,7 @@
 //! The emitted functions in render pipelines whose other bind groups hold uniform buffers of the engine's: whatever buffers
 //! come before the lights', a picture comes out, and the same one.
 //!
-//! Drivers have crashed here, so the drawing is done in a process of its own.
+//! Vulkan drivers have crashed here, so the drawing is done in a process of its own, and by Vulkan whatever the run is on.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,7 @@ use image::RgbaImage;
 use wgpu_shadows::{Bias, Filter, ShadowBindings, ShadowBindingsDescriptor, shader};
 
 use crate::support::child;
-use crate::support::gpu::{Gpu, gpu};
+use crate::support::gpu::{Gpu, vulkan};
 use crate::support::lights::{Kind, Light, stage};
 use crate::support::picture::{COLOR, color_pass, color_target};
 use crate::support::readback;
@@ -68,7 +68,7 @@ fn any_lights_draw_behind_any_buffers() {
 }
 
 fn draw_all() -> usize {
-    let gpu = gpu();
+    let gpu = vulkan();
     let stage = stage(gpu);
     let mut drawn = 0;
     for set in sets() {
@@ -208,7 +208,7 @@ fn own_views_draw_behind_any_buffers() {
 }
 
 fn draw_own() -> usize {
-    let gpu = gpu();
+    let gpu = vulkan();
     let stage = stage(gpu);
     let [sun, _, _, spot, ..] = Kind::ALL;
     let mut drawn = 0;

@@ -48,7 +48,7 @@ fn vertex(@location(0) position: vec3<f32>, @location(1) color: vec3<f32>) -> Va
 
 @fragment
 fn fragment(in: Varying) -> @location(0) vec4<f32> {
-    let normal = shadow_geometric_normal(in.position);
+    let normal = shadow_geometric_normal(in.position, eye.position - in.position);
     let toward_light = -normalize(eye.light);
     let toward_eye = normalize(eye.position - in.position);
     let facing = max(dot(normal, toward_light), 0.0);

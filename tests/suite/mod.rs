@@ -34,6 +34,7 @@ mod hard_cases;
 mod keeping;
 mod kept_origin;
 mod mesh_errors;
+mod mirrored_views;
 mod never_stale;
 mod omni;
 mod omni_input;

@@ -1,0 +1,455 @@
+//! `shadow_geometric_normal` under cameras of either handedness: the normal is on the side it is told, so that a scene seen in a
+//! mirror has no more acne than the scene itself.
+
+use glam::{DMat4, DVec3, Mat4, Vec3};
+use image::RgbaImage;
+use wgpu_shadows::{
+    Bias, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, ShadowBindings, ShadowBindingsDescriptor, shader,
+};
+
+use crate::support::camera::{Camera, Lens};
+use crate::support::gpu::{Gpu, gpu};
+use crate::support::picture::{COLOR, color_target, depth_target, scene_pass};
+use crate::support::probe::record;
+use crate::support::readback;
+use crate::support::scene::{Mesh, Scene, occluded};
+
+const SIZE: u32 = 128;
+const LIGHT: Vec3 = Vec3::new(-0.7, -1.0, 0.35);
+
+const VERTEX: &str = "
+struct Eye {
+    clip_from_render: mat4x4<f32>,
+    // Of an orthographic camera the direction toward it, with w = 0; of a perspective one its place, with w = 1.
+    place: vec4<f32>,
+}
+@group(0) @binding(0) var<uniform> eye: Eye;
+
+struct Varying {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) position: vec3<f32>,
+}
+
+@vertex
+fn vertex(@location(0) position: vec3<f32>) -> Varying {
+    return Varying(eye.clip_from_render * vec4<f32>(position, 1.0), position);
+}
+";
+
+/// Visibility, and where something was drawn at all.
+const VISIBILITY: &str = "
+@fragment
+fn fragment(in: Varying) -> @location(0) vec4<f32> {
+    let toward_viewer = eye.place.xyz - eye.place.w * in.position;
+    let normal = shadow_geometric_normal(in.position, toward_viewer);
+    return vec4<f32>(shadow_sun(in.position, normal), 1.0, 0.0, 1.0);
+}
+";
+
+/// A way to look at the scene: the camera as the library knows it, and what is done to space before and to clip space after it.
+struct View {
+    name: &'static str,
+    camera: Camera,
+    /// Reflects in a plane, or leaves things where they are.
+    mirror: DMat4,
+    /// 1, or -1 for a target with y downward.
+    clip_y: f64,
+}
+
+impl View {
+    fn clip_from_render(&self) -> Mat4 {
+        let flip = DMat4::from_scale(DVec3::new(1.0, self.clip_y, 1.0));
+        let camera = self.camera.clip_from_view() * self.camera.view_from_render();
+        (flip * camera * self.mirror).as_mat4()
+    }
+
+    /// The ray of a pixel, in the space of the scene.
+    fn ray(&self, x: f64, y: f64) -> (DVec3, DVec3) {
+        let across = x / f64::from(SIZE);
+        let down = y / f64::from(SIZE);
+        let up = if self.clip_y > 0.0 { 1.0 - down } else { down };
+        let (start, direction) = self.camera.ray(across, up);
+        // A reflection is its own inverse.
+        let start = self.mirror.transform_point3(start);
+        (start, self.mirror.transform_vector3(direction))
+    }
+
+    /// What `Eye` holds.
+    fn uniform(&self) -> Vec<f32> {
+        let place = match self.camera.lens {
+            Lens::Perspective { .. } => self
+                .mirror
+                .transform_point3(self.camera.pose.eye)
+                .extend(1.0),
+            Lens::Orthographic { .. } => self
+                .mirror
+                .transform_vector3(self.camera.pose.axes.z_axis)
+                .extend(0.0),
+        };
+        let matrix = self.clip_from_render().to_cols_array();
+        matrix
+            .into_iter()
+            .chain(place.as_vec4().to_array())
+            .collect()
+    }
+}
+
+fn views() -> Vec<View> {
+    let eye = DVec3::new(1.5, 4.2, 6.0);
+    let perspective = Camera::modern(eye, DVec3::new(-0.2, 0.4, 0.0), 0.8, 1.0);
+    let perspective = Camera {
+        reversed: false,
+        ..perspective
+    };
+    let orthographic = Camera {
+        lens: Lens::Orthographic {
+            sides: [-3.0, 3.0, -3.0, 3.0],
+            near: 0.1,
+            far: 20.0,
+        },
+        ..perspective
+    };
+    // A mirror on a wall at x = -0.5, and one that leans.
+    let wall = reflection(DVec3::X, -0.5);
+    let leaning = reflection(DVec3::new(0.8, 0.1, 0.59).normalize(), 0.2);
+    let still = DMat4::IDENTITY;
+    let view = |name, camera, mirror, clip_y| View {
+        name,
+        camera,
+        mirror,
+        clip_y,
+    };
+    vec![
+        view("plain", perspective, still, 1.0),
+        view("y downward", perspective, still, -1.0),
+        view("wall mirror", perspective, wall, 1.0),
+        view("leaning mirror", perspective, leaning, 1.0),
+        view("wall mirror, y downward", perspective, wall, -1.0),
+        view("orthographic", orthographic, still, 1.0),
+        view("orthographic, y downward", orthographic, still, -1.0),
+        view("orthographic, wall mirror", orthographic, wall, 1.0),
+    ]
+}
+
+/// The reflection in the plane of the points p with normal · p = distance.
+fn reflection(normal: DVec3, distance: f64) -> DMat4 {
+    let image = |axis: DVec3| axis - normal * (2.0 * normal.dot(axis));
+    DMat4::from_cols(
+        image(DVec3::X).extend(0.0),
+        image(DVec3::Y).extend(0.0),
+        image(DVec3::Z).extend(0.0),
+        (normal * (2.0 * distance)).extend(1.0),
+    )
+}
+
+/// A floor, a block and a board that leans, all of flat faces.
+fn meshes() -> [Mesh; 3] {
+    [
+        Mesh::floor(0.0, 6.0),
+        Mesh::cuboid(Vec3::new(-1.0, 0.0, -1.3), Vec3::new(0.3, 1.3, 0.1)),
+        Mesh::sheet(
+            Vec3::new(1.0, 0.0, -0.4),
+            Vec3::new(1.1, 0.0, 0.9),
+            Vec3::new(0.2, 1.3, -0.5),
+        ),
+    ]
+}
+
+/// Pixels whose truth is the same over the whole footprint of a lookup, by that truth: dark, lit.
+struct Settled {
+    dark: Vec<[u32; 2]>,
+    lit: Vec<[u32; 2]>,
+}
+
+/// What rays say of each pixel of a view. `footprint` is the reach of a lookup across the light, in world units.
+fn settled(scene: &Scene, view: &View, footprint: f64) -> Settled {
+    let toward_light = -LIGHT.as_dvec3().normalize();
+    let side = toward_light.any_orthonormal_vector();
+    let across = toward_light.cross(side);
+    let triangles = &scene.triangles;
+    // The nearest surface along a pixel's ray: which plane, and where.
+    let seen = |x: f64, y: f64| {
+        let (start, direction) = view.ray(x, y);
+        triangles
+            .iter()
+            .filter_map(|triangle| Some((triangle.hit(start, direction)?, triangle)))
+            .filter(|(t, _)| *t > 0.1)
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(t, triangle)| {
+                let normal = triangle.normal();
+                let normal = normal * -normal.dot(direction).signum();
+                (start + direction * t, normal)
+            })
+    };
+    let mut settled = Settled {
+        dark: Vec::new(),
+        lit: Vec::new(),
+    };
+    for y in 0..SIZE {
+        for x in 0..SIZE {
+            let (px, py) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
+            let Some((place, normal)) = seen(px, py) else {
+                continue;
+            };
+            // Where the picture itself has an edge, rounding decides which surface a pixel shows.
+            let same_plane = [(-0.1, 0.0), (0.1, 0.0), (0.0, -0.1), (0.0, 0.1)]
+                .iter()
+                .all(|(dx, dy)| {
+                    seen(px + dx, py + dy).is_some_and(|(other, other_normal)| {
+                        normal.dot(other_normal) > 0.999 && normal.dot(other - place).abs() < 1e-6
+                    })
+                });
+            // A face that turns away, or nearly, sees its footprint stretched over all that is around it.
+            if !same_plane || normal.dot(toward_light) < 0.15 {
+                continue;
+            }
+            let dark_at = |place: DVec3| occluded(triangles, place, toward_light, 1e-6);
+            let dark = dark_at(place);
+            let around = (0..16).map(|step| {
+                let angle = f64::from(step) * std::f64::consts::TAU / 8.0;
+                let radius = footprint * if step < 8 { 1.0 } else { 0.4 };
+                let aside = (side * angle.cos() + across * angle.sin()) * radius;
+                place + aside - toward_light * (normal.dot(aside) / normal.dot(toward_light))
+            });
+            let mut around = around;
+            if around.all(|place| dark_at(place) == dark) {
+                let list = if dark {
+                    &mut settled.dark
+                } else {
+                    &mut settled.lit
+                };
+                list.push([x, y]);
+            }
+        }
+    }
+    settled
+}
+
+#[test]
+fn a_mirror_shows_no_acne() {
+    let gpu = gpu();
+    let scene = Scene::new(gpu, &meshes());
+    let descriptor = DirectionalShadowDescriptor {
+        map_size: 512,
+        bias: Bias::Auto,
+        ..Default::default()
+    };
+    let mut shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");
+    let frame = DirectionalFrame {
+        origin: DVec3::ZERO,
+        light: DirectionalLight::new(LIGHT),
+        // One map for all views.
+        coverage: Coverage::Bounds(wgpu_shadows::Aabb::new(
+            Vec3::new(-6.0, 0.0, -6.0),
+            Vec3::new(6.0, 1.5, 6.0),
+        )),
+        casters: &scene.list(),
+        receivers: &[],
+    };
+    record(gpu, &mut shadow, &frame);
+    let texel = shadow.views().next().expect("a view").texel_size_world();
+    // The tent's reach, and a texel for the offset and the caster's rasterisation.
+    let footprint = 3.0 * f64::from(texel.max_element()) * std::f64::consts::SQRT_2;
+    let bindings = ShadowBindings::new(
+        &gpu.device,
+        &ShadowBindingsDescriptor {
+            lights: &[("sun", shadow.source())],
+            ..Default::default()
+        },
+    )
+    .expect("valid bindings");
+    let source = format!("{}{VERTEX}{VISIBILITY}", bindings.wgsl());
+    let vertices: Vec<Vec3> = meshes()
+        .iter()
+        .flat_map(|mesh| {
+            mesh.indices
+                .iter()
+                .map(|index| mesh.positions[*index as usize])
+        })
+        .collect();
+    let mut failures = Vec::new();
+    for view in views() {
+        let picture = draw(gpu, &source, &view.uniform(), &vertices, Some(&bindings));
+        let truth = settled(&scene, &view, footprint);
+        let (dark, lit) = (truth.dark.len(), truth.lit.len());
+        assert!(
+            dark > 100 && lit > 3000,
+            "{}: {dark} dark, {lit} lit",
+            view.name
+        );
+        let seen = |[x, y]: &[u32; 2]| picture.get_pixel(*x, *y).0;
+        // Rays and the rasteriser see the same.
+        assert!(truth.lit.iter().all(|pixel| seen(pixel)[1] == 255));
+        let acne = truth
+            .lit
+            .iter()
+            .filter(|pixel| seen(pixel)[0] < 255)
+            .count();
+        let leaks = truth.dark.iter().filter(|pixel| seen(pixel)[0] > 0).count();
+        if (acne, leaks) != (0, 0) {
+            failures.push(format!(
+                "{}: {acne} of {lit} falsely dark, {leaks} of {dark} falsely lit",
+                view.name
+            ));
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// Both windings, both handednesses, and sides of any length: a triangle that leans has its own normal on the side that is told.
+#[test]
+fn normals_are_on_the_side_that_is_told() {
+    let gpu = gpu();
+    let corners = [
+        Vec3::new(-2.0, -1.0, -2.0),
+        Vec3::new(2.0, -2.0, 0.5),
+        Vec3::new(0.3, 3.0, 0.7),
+    ];
+    let normal = (corners[1] - corners[0])
+        .cross(corners[2] - corners[0])
+        .normalize();
+    let modules = shader::compose(&["normal"]).expect("a module of the table");
+    let fragment = "
+@fragment
+fn fragment(in: Varying) -> @location(0) vec4<f32> {
+    return vec4<f32>(shadow_geometric_normal(in.position, eye.place.xyz) * 0.5 + 0.5, 1.0);
+}
+";
+    let source = format!("{modules}{VERTEX}{fragment}");
+    let aslant = normal + 0.9 * normal.any_orthonormal_vector();
+    let sides = [1.0, 1e-30, 1e-36, 1e6, 1e30, 3e38].map(|length| aslant.normalize() * length);
+    for mirrored in [1.0, -1.0] {
+        for turned in [false, true] {
+            let mut vertices = corners;
+            if turned {
+                vertices.swap(1, 2);
+            }
+            // The steps of a pixel in positions of all sizes: the place is scaled, and clip space with it.
+            for scale in [1.0, 1e-6, 1e-30, 1e-34, 1e6, 1e30] {
+                let vertices = vertices.map(|corner| corner * scale);
+                let clip = Mat4::from_scale(Vec3::new(0.3 * mirrored / scale, 0.3 / scale, 0.0));
+                let told = |side: Vec3| {
+                    let uniform: Vec<f32> = clip
+                        .to_cols_array()
+                        .into_iter()
+                        .chain(side.extend(0.0).to_array())
+                        .collect();
+                    let picture = draw(gpu, &source, &uniform, &vertices, None);
+                    let [x, y, z, _] = picture.get_pixel(SIZE / 2, SIZE / 2).0;
+                    [x, y, z].map(|byte| f32::from(byte) / 127.5 - 1.0)
+                };
+                let context = format!("mirrored {mirrored}, turned {turned}, scale {scale}");
+                let near = |seen: [f32; 3], wanted: Vec3| {
+                    // A step of 8 bits is 1/127.5, half of it rounding, and the derivatives' own error far below.
+                    Vec3::from_array(seen).abs_diff_eq(wanted, 0.5 / 127.5 + 1e-3)
+                };
+                for side in sides {
+                    for sign in [1.0, -1.0] {
+                        let seen = told(side * sign);
+                        assert!(
+                            near(seen, normal * sign),
+                            "{context}: {seen:?} for the side {}",
+                            side * sign
+                        );
+                    }
+                }
+                for side in [Vec3::ZERO, Vec3::NAN] {
+                    let seen = told(side);
+                    assert!(
+                        near(seen, normal) || near(seen, -normal),
+                        "{context}: {seen:?} for {side}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// A picture of triangles, with the lights in group 1 if there are any.
+fn draw(
+    gpu: &Gpu,
+    source: &str,
+    uniform: &[f32],
+    vertices: &[Vec3],
+    bindings: Option<&ShadowBindings>,
+) -> RgbaImage {
+    let device = &gpu.device;
+    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("eye"),
+        entries: &[wgpu::BindGroupLayoutEntry {
+            binding: 0,
+            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+            ty: wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Uniform,
+                has_dynamic_offset: false,
+                min_binding_size: None,
+            },
+            count: None,
+        }],
+    });
+    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("eye"),
+        layout: &layout,
+        entries: &[wgpu::BindGroupEntry {
+            binding: 0,
+            resource: gpu
+                .buffer(uniform, wgpu::BufferUsages::UNIFORM)
+                .as_entire_binding(),
+        }],
+    });
+    let mut layouts = vec![Some(&layout)];
+    layouts.extend(bindings.map(|bindings| Some(bindings.layout())));
+    let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("mirrored view"),
+        bind_group_layouts: &layouts,
+        immediate_size: 0,
+    });
+    let module = gpu.shader(source);
+    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("mirrored view"),
+        layout: Some(&pipeline_layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("vertex"),
+            compilation_options: Default::default(),
+            buffers: &[Some(wgpu::VertexBufferLayout {
+                array_stride: 12,
+                step_mode: wgpu::VertexStepMode::Vertex,
+                attributes: &wgpu::vertex_attr_array![0 => Float32x3],
+            })],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: wgpu::TextureFormat::Depth32Float,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Less),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("fragment"),
+            compilation_options: Default::default(),
+            targets: &[Some(COLOR.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    });
+    let (target, depth) = (color_target(gpu, SIZE), depth_target(gpu, SIZE));
+    let vertex_buffer = gpu.buffer(vertices, wgpu::BufferUsages::VERTEX);
+    let mut encoder = gpu.encoder();
+    {
+        let mut pass = scene_pass(&mut encoder, &target, &depth);
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        if let Some(bindings) = bindings {
+            pass.set_bind_group(bindings.group(), bindings.bind_group(), &[]);
+        }
+        pass.set_vertex_buffer(0, vertex_buffer.slice(..));
+        pass.draw(0..vertices.len() as u32, 0..1);
+    }
+    gpu.submit(encoder);
+    readback::rgba8(gpu, &target)
+}
