@@ -50,7 +50,7 @@ pub struct ShadowBindingsDescriptor<'a> {
     /// Stages that call the functions. Default `FRAGMENT`; add `COMPUTE` for volumetric light.
     pub visibility: wgpu::ShaderStages,
     /// The lights by name. A light named `sun` is asked through `shadow_sun(position, normal)`, a pool named `lamps` through
-    /// `shadow_lamps(index, position, normal)` with the index of the light's slot.
+    /// `shadow_lamps(index, position, normal)` with the index of the light's slot. An index that no slot has is lit.
     pub lights: &'a [(&'a str, ShadowSource<'a>)],
 }
 

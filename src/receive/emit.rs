@@ -95,31 +95,42 @@ fn first_that_covers(name: &str, receiver: &Receiver<'_>) -> String {
 
 /// The face on which the place lies as seen from the light, if it holds it.
 fn face_that_holds(name: &str, receiver: &Receiver<'_>) -> String {
-    let (first, _) = view_range(receiver);
-    let face = format!(" + shadow_cube_face(position - shadow_views_{name}[{first}].anchor)");
+    let any = any_view(receiver);
+    let face = format!(" + shadow_cube_face(position - shadow_views_{name}[{any}].anchor)");
     view_that_holds(name, receiver, face)
 }
 
 /// The light's first view, or so many after it, if it holds the place.
 fn view_that_holds(name: &str, receiver: &Receiver<'_>, after_first: String) -> String {
-    let (first, end) = view_range(receiver);
+    let count = receiver.view_count;
+    let first = first_view(receiver);
     format!(
         "    let view = {first}{after_first};
-    if view < {end} && shadow_view_holds(shadow_views_{name}[view], position) {{
+    if view < {count}u && shadow_view_holds(shadow_views_{name}[view], position) {{
         return view;
     }}
 "
     )
 }
 
-/// First view and end of a light's views; an index past the pool has none.
-fn view_range(receiver: &Receiver<'_>) -> (String, String) {
+/// First view of a light; for an index that no slot of the pool has, the end of all views. The index is limited before it is
+/// multiplied: 32 bits do not hold every product.
+fn first_view(receiver: &Receiver<'_>) -> String {
     let (count, per_light) = (receiver.view_count, receiver.views_per_light);
     if receiver.indexed {
-        let end = format!("min(index * {per_light}u + {per_light}u, {count}u)");
-        (format!("index * {per_light}u"), end)
+        format!("min(index, {}u) * {per_light}u", count / per_light)
     } else {
-        ("0u".to_owned(), format!("{count}u"))
+        "0u".to_owned()
+    }
+}
+
+/// A view of the light, for what all its views have in common; for an index that no slot has, one of another light.
+fn any_view(receiver: &Receiver<'_>) -> String {
+    let (count, per_light) = (receiver.view_count, receiver.views_per_light);
+    if receiver.indexed {
+        format!("min(index, {}u) * {per_light}u", count / per_light - 1)
+    } else {
+        "0u".to_owned()
     }
 }
 
@@ -170,7 +181,7 @@ fn mean_lookup(
     samples: u32,
 ) -> String {
     let count = receiver.view_count;
-    let (first, _) = view_range(receiver);
+    let any = any_view(receiver);
     let make_receiver = make_receiver(receiver);
     let lookup = lookup(name, receiver);
     let meets = match receiver.sampling.bias {
@@ -178,7 +189,7 @@ fn mean_lookup(
         Bias::Auto | Bias::NormalOffset => "shadow_direction_on_plane(from_light, normal, offset)",
     };
     format!(
-        "    let light = shadow_views_{name}[{first}];
+        "    let light = shadow_views_{name}[{any}];
     let from_light = position - light.anchor;
     if length(from_light) >= light.range {{
         return 1.0;

@@ -46,6 +46,7 @@ mod penumbra_twin;
 mod pool;
 mod pool_budget;
 mod pool_importance;
+mod pool_index;
 mod receiver_parity;
 mod reference_limits;
 mod scene;

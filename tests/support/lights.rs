@@ -55,7 +55,7 @@ pub enum Kind {
     },
     Spot,
     Lamp,
-    /// The light is in slot 1 of two.
+    /// The light is in both of two slots.
     Spots,
     Lamps,
 }
@@ -168,7 +168,7 @@ impl Kind {
                 let pool = pool(MAP_SIZE, filter, bias);
                 let mut pool = SpotShadowPool::new(device, &pool).expect("a valid pool");
                 let slots = [(); 2].map(|()| pool.insert().expect("a free slot"));
-                let lights = [in_pool(slots[1], spot_light)];
+                let lights = slots.map(|slot| in_pool(slot, spot_light));
                 let frame = pool_frame(&lights, &casters);
                 submitted(gpu, |encoder| pool.record(device, encoder, &frame))
                     .expect("a valid frame");
@@ -178,7 +178,7 @@ impl Kind {
                 let pool = pool(MAP_SIZE, filter, bias);
                 let mut pool = OmniShadowPool::new(device, &pool).expect("a valid pool");
                 let slots = [(); 2].map(|()| pool.insert().expect("a free slot"));
-                let lights = [in_pool(slots[1], omni_light)];
+                let lights = slots.map(|slot| in_pool(slot, omni_light));
                 let frame = pool_frame(&lights, &casters);
                 submitted(gpu, |encoder| pool.record(device, encoder, &frame))
                     .expect("a valid frame");
