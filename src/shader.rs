@@ -4,7 +4,8 @@
 //! as they are as WESL or naga_oil modules. Sampling functions take texture, sampler and view as arguments; nothing in
 //! [`MODULES`] declares a binding but the caster modules and those of whole passes. An engine with its own bind groups composes
 //! `["bias_plane", "filter_tent_narrow"]` and calls
-//! `shadow_filter_tent_narrow(map, map_sampler, shadow_receiver_plane(view, position, normal))`.
+//! `shadow_filter_tent_narrow(map, map_sampler, shadow_receiver_plane(view, position, normal))`. On devices whose shaders cannot
+//! gather (OpenGL ES 3.0, WebGL 2) it names `"texels_by_samples"` beside them and binds the maps as `texture_2d_array<f32>`.
 
 use crate::error::BindingsError;
 
@@ -17,6 +18,8 @@ pub struct ShaderModule {
     pub source: &'static str,
     /// Names of the modules whose declarations it uses.
     pub requires: &'static [&'static str],
+    /// Name of the module whose place it takes in a composition that names it: both declare the same, for different devices.
+    pub replaces: Option<&'static str>,
 }
 
 macro_rules! module {
@@ -25,6 +28,7 @@ macro_rules! module {
             name: $name,
             source: include_str!(concat!("../wgsl/", $file)),
             requires: &[$($requires),*],
+            replaces: None,
         }
     };
 }
@@ -50,45 +54,62 @@ pub(crate) const CASCADE_TINT: ShaderModule = module!(
     ["view", "fullscreen"]
 );
 
+pub(crate) const GATHER_PROBE: ShaderModule =
+    module!("gather_probe", "pass/gather_probe.wgsl", ["fullscreen"]);
+const TEXELS_BY_SAMPLES: ShaderModule = ShaderModule {
+    replaces: Some("texels"),
+    ..module!("texels_by_samples", "texels_by_samples.wgsl", ["view"])
+};
+
 /// Every WGSL text of the library.
 pub const MODULES: &[ShaderModule] = &[
     module!("view", "view.wgsl", []),
     module!("bias_plane", "bias_plane.wgsl", ["view"]),
     module!("bias_normal_offset", "bias_normal_offset.wgsl", ["view"]),
     module!("bias_manual", "bias_manual.wgsl", ["view"]),
-    module!("gather", "gather.wgsl", ["view"]),
-    module!("filter_nearest", "filter_nearest.wgsl", ["view", "gather"]),
+    module!("texels", "texels.wgsl", ["view"]),
+    TEXELS_BY_SAMPLES,
+    module!("gather", "gather.wgsl", ["view", "texels"]),
+    module!(
+        "filter_nearest",
+        "filter_nearest.wgsl",
+        ["view", "texels", "gather"]
+    ),
     module!("filter_hardware", "filter_hardware.wgsl", ["view"]),
-    module!("filter_box", "filter_box.wgsl", ["view", "gather"]),
+    module!(
+        "filter_box",
+        "filter_box.wgsl",
+        ["view", "texels", "gather"]
+    ),
     module!(
         "filter_bilinear",
         "filter_bilinear.wgsl",
-        ["view", "gather"]
+        ["view", "texels", "gather"]
     ),
     module!(
         "filter_tent_narrow",
         "filter_tent_narrow.wgsl",
-        ["view", "gather"]
+        ["view", "texels", "gather"]
     ),
     module!(
         "filter_tent_medium",
         "filter_tent_medium.wgsl",
-        ["view", "gather"]
+        ["view", "texels", "gather"]
     ),
     module!(
         "filter_tent_wide",
         "filter_tent_wide.wgsl",
-        ["view", "gather"]
+        ["view", "texels", "gather"]
     ),
     module!(
         "filter_penumbra",
         "filter_penumbra.wgsl",
-        ["view", "gather", "filter_tent_narrow"]
+        ["view", "texels", "gather", "filter_tent_narrow"]
     ),
     module!(
         "filter_penumbra_turned",
         "filter_penumbra_turned.wgsl",
-        ["view", "filter_penumbra"]
+        ["view", "texels", "filter_penumbra"]
     ),
     module!("filter_direction", "filter_direction.wgsl", ["view"]),
     module!("cube_face", "cube_face.wgsl", []),
@@ -100,9 +121,11 @@ pub const MODULES: &[ShaderModule] = &[
     module!("fullscreen", "pass/fullscreen.wgsl", []),
     DEBUG_VIEW,
     CASCADE_TINT,
+    GATHER_PROBE,
 ];
 
-/// The texts of the named modules and of all that they require, each once, in table order.
+/// The texts of the named modules and of all that they require, each once, in table order; a named module that replaces another
+/// stands in its place.
 ///
 /// # Errors
 /// [`BindingsError::UnknownModule`] for a name that is not in [`MODULES`].
@@ -121,10 +144,15 @@ pub fn compose(names: &[&str]) -> Result<String, BindingsError> {
             open.extend_from_slice(MODULES[index].requires);
         }
     }
-    Ok(MODULES
-        .iter()
-        .zip(wanted)
-        .filter(|(_, wanted)| *wanted)
-        .map(|(module, _)| module.source)
+    let chosen = || {
+        let with_choice = MODULES.iter().zip(wanted);
+        with_choice
+            .filter(|(_, wanted)| *wanted)
+            .map(|(module, _)| module)
+    };
+    let is_replaced = |name| chosen().any(|other| other.replaces == Some(name));
+    Ok(chosen()
+        .filter(|module| !is_replaced(module.name))
+        .map(|module| module.source)
         .collect())
 }

@@ -1,8 +1,8 @@
 // Gathered 2x2 texels, bilinearly weighted in full precision. Reach: one texel.
-// Rust twin: src/receive/reference.rs. Requires: view, gather.
+// Rust twin: src/receive/reference.rs. Requires: view, texels, gather.
 
 fn shadow_filter_bilinear(
-    map: texture_depth_2d_array,
+    map: ShadowMap,
     map_sampler: sampler,
     receiver: ShadowReceiver,
 ) -> f32 {

@@ -1,8 +1,8 @@
 // The textbook's 3x3 percentage-closer filter: the mean of nine nearest comparisons one texel apart, in steps of a ninth, out
-// of four gathers. Reach: one and a half texels. Rust twin: src/receive/reference.rs. Requires: view, gather.
+// of four gathers. Reach: one and a half texels. Rust twin: src/receive/reference.rs. Requires: view, texels, gather.
 
 fn shadow_filter_box(
-    map: texture_depth_2d_array,
+    map: ShadowMap,
     map_sampler: sampler,
     receiver: ShadowReceiver,
 ) -> f32 {

@@ -7,7 +7,7 @@
 // of the occluders that can hide a part of the light is found, then visibility is the mean over the disk that they spread.
 // Exact for one planar occluder parallel to the map; elsewhere in error by the averaging of occluders.
 // Every texel is compared with the receiver's own plane, as in `gather`. Rust twin: src/receive/reference.rs.
-// Requires: view, gather, filter_tent_narrow.
+// Requires: view, texels, gather, filter_tent_narrow.
 
 // Widest disk in texels; maps keep this much free around what they cover.
 const SHADOW_PENUMBRA_REACH: f32 = 32.0;
@@ -36,13 +36,12 @@ fn shadow_search_disk(index: u32, count: u32) -> vec3<f32> {
 
 // Sum of depth differences, and number, of the occluders among four texels that can hide a part of the light: x and y.
 fn shadow_occluders(
-    map: texture_depth_2d_array,
+    map: ShadowMap,
     map_sampler: sampler,
     receiver: ShadowReceiver,
     first: vec2<f32>,
 ) -> vec2<f32> {
-    let corner = (first + 1.0) / receiver.map_size;
-    let depths = textureGather(map, map_sampler, corner, receiver.layer).wzxy;
+    let depths = shadow_texels(map, map_sampler, receiver, first);
     let nearer = depths - shadow_references(receiver, first);
     let height = depths - receiver.depth;
     // Within the disk that an occluder of this height spreads, and half a texel more for its own size.
@@ -56,7 +55,7 @@ fn shadow_occluders(
 }
 
 fn shadow_filter_penumbra(
-    map: texture_depth_2d_array,
+    map: ShadowMap,
     map_sampler: sampler,
     receiver: ShadowReceiver,
 ) -> f32 {
@@ -65,7 +64,7 @@ fn shadow_filter_penumbra(
 
 // The same with both patterns turned by `turn`.
 fn shadow_penumbra(
-    map: texture_depth_2d_array,
+    map: ShadowMap,
     map_sampler: sampler,
     receiver: ShadowReceiver,
     turn: mat2x2<f32>,

@@ -1,9 +1,9 @@
 // Bilinear comparisons under the kernel [1 3 4 3 1] per axis: 6x6 texels in nine gathers. Reach: three texels.
 // Kernel: Castaño 2013, "Shadow Mapping Summary", here over raw depths so that every texel has its own reference.
-// Rust twin: src/receive/reference.rs. Requires: view, gather.
+// Rust twin: src/receive/reference.rs. Requires: view, texels, gather.
 
 fn shadow_filter_tent_medium(
-    map: texture_depth_2d_array,
+    map: ShadowMap,
     map_sampler: sampler,
     receiver: ShadowReceiver,
 ) -> f32 {
@@ -31,7 +31,7 @@ fn shadow_tent_medium_weights(s: f32) -> mat3x2<f32> {
 
 // Two rows of six texels.
 fn shadow_tent_medium_rows(
-    map: texture_depth_2d_array,
+    map: ShadowMap,
     map_sampler: sampler,
     receiver: ShadowReceiver,
     first: vec2<f32>,

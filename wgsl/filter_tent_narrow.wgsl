@@ -1,9 +1,9 @@
 // Bilinear comparisons under the kernel [1 2 1] per axis: 4x4 texels in four gathers. Reach: two texels.
 // Kernel: Castaño 2013, "Shadow Mapping Summary", here over raw depths so that every texel has its own reference.
-// Rust twin: src/receive/reference.rs. Requires: view, gather.
+// Rust twin: src/receive/reference.rs. Requires: view, texels, gather.
 
 fn shadow_filter_tent_narrow(
-    map: texture_depth_2d_array,
+    map: ShadowMap,
     map_sampler: sampler,
     receiver: ShadowReceiver,
 ) -> f32 {

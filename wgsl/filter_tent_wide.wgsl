@@ -1,9 +1,9 @@
 // Bilinear comparisons under the kernel [1 5 12 16 12 5 1] per axis: 8x8 texels in sixteen gathers. Reach: four texels.
 // Kernel: Castaño 2013, "Shadow Mapping Summary", here over raw depths so that every texel has its own reference.
-// Rust twin: src/receive/reference.rs. Requires: view, gather.
+// Rust twin: src/receive/reference.rs. Requires: view, texels, gather.
 
 fn shadow_filter_tent_wide(
-    map: texture_depth_2d_array,
+    map: ShadowMap,
     map_sampler: sampler,
     receiver: ShadowReceiver,
 ) -> f32 {
@@ -33,7 +33,7 @@ fn shadow_tent_wide_weights(s: f32) -> mat4x2<f32> {
 
 // Two rows of eight texels.
 fn shadow_tent_wide_rows(
-    map: texture_depth_2d_array,
+    map: ShadowMap,
     map_sampler: sampler,
     receiver: ShadowReceiver,
     first: vec2<f32>,

@@ -1,19 +1,15 @@
 // Four raw depths at once, each compared with the receiver's own depth at that texel.
 //
-// Rust twin: src/receive/reference.rs. Requires: view.
+// Rust twin: src/receive/reference.rs. Requires: view, texels.
 
 // 1 where lit, for the texels (first), (first + x), (first + y), (first + x + y).
 fn shadow_gather(
-    map: texture_depth_2d_array,
+    map: ShadowMap,
     map_sampler: sampler,
     receiver: ShadowReceiver,
     first: vec2<f32>,
 ) -> vec4<f32> {
-    // The corner where the four texels meet: half a texel from every other choice, so rounding cannot miss them.
-    let corner = (first + 1.0) / receiver.map_size;
-    // Gather's order is counter-clockwise from the lower left.
-    let depths = textureGather(map, map_sampler, corner, receiver.layer).wzxy;
-    let lit = shadow_references(receiver, first) >= depths;
+    let lit = shadow_references(receiver, first) >= shadow_texels(map, map_sampler, receiver, first);
     return select(vec4<f32>(0.0), vec4<f32>(1.0), lit);
 }
 

@@ -8,13 +8,12 @@ use crate::gpu::{capture_device_errors, filled_buffer, fullscreen_pipeline};
 use crate::receive::{Receiver, ShadowViewUniform};
 use crate::shader;
 
-/// Mirror of `ShadowTint` in `wgsl/pass/cascade_tint.wgsl`, rounded up to 16 bytes.
+/// Mirror of `ShadowTint` in `wgsl/pass/cascade_tint.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 struct TintUniform {
     render_from_clip: [[f32; 4]; 4],
-    count: u32,
-    padding: [u32; 3],
+    count: [u32; 4],
 }
 
 /// The pipeline that multiplies a picture by its tint.
@@ -56,8 +55,7 @@ impl CascadeTint {
         views[..count].copy_from_slice(&receiver.uniforms[..count]);
         let header = TintUniform {
             render_from_clip: render_from_clip.to_cols_array_2d(),
-            count: count as u32,
-            padding: [0; 3],
+            count: [count as u32, 0, 0, 0],
         };
         let upload = |contents: &[u8]| {
             let usage = wgpu::BufferUsages::UNIFORM;
@@ -109,7 +107,7 @@ fn create_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
         min_binding_size: wgpu::BufferSize::new(bytes as u64),
     };
     let depth = wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Depth,
+        sample_type: wgpu::TextureSampleType::Float { filterable: false },
         view_dimension: wgpu::TextureViewDimension::D2,
         multisampled: false,
     };

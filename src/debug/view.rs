@@ -10,12 +10,11 @@ use crate::gpu::{capture_device_errors, filled_buffer, fullscreen_pipeline};
 use crate::receive::{Selection, ShadowSource, ShadowViewUniform};
 use crate::shader;
 
-/// Mirror of `ShadowDebugView` in `wgsl/pass/debug_view.wgsl`, rounded up to 16 bytes.
+/// Mirror of `ShadowDebugView` in `wgsl/pass/debug_view.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 struct DebugUniform {
-    local: u32,
-    padding: [u32; 3],
+    local: [u32; 4],
 }
 
 /// Views that a picture may need: the faces of a cube.
@@ -137,8 +136,7 @@ impl DebugView {
         }
         let local = shown.iter().any(|view| view.light[3] > 0.0);
         let header = DebugUniform {
-            local: u32::from(local),
-            padding: [0; 3],
+            local: [u32::from(local), 0, 0, 0],
         };
         let bind_group = self
             .bind_group(device, &header, &views, receiver.map)
@@ -232,7 +230,7 @@ fn create_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
                 binding: 2,
                 visibility: wgpu::ShaderStages::FRAGMENT,
                 ty: wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Depth,
+                    sample_type: wgpu::TextureSampleType::Float { filterable: false },
                     view_dimension: wgpu::TextureViewDimension::D2Array,
                     multisampled: false,
                 },

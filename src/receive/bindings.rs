@@ -4,6 +4,7 @@ use crate::error::BindingsError;
 use crate::gpu::{Need, capture_device_errors};
 use crate::receive::filter::FilterSampler;
 use crate::receive::uniforms::view_uniform_bytes;
+use crate::receive::texel_access::TexelAccess;
 use crate::receive::{Sampling, ShadowViewUniform, emit};
 use crate::shader;
 
@@ -79,8 +80,8 @@ impl Default for ShadowBindingsDescriptor<'_> {
 ///
 /// `shadow_view_NAME(position)` (for pools with the index in front) tells which view serves a place, for a tint of cascades or
 /// faces: the number of the layer, or the number of layers where none does.
-/// The variables `shadow_map_NAME` and `shadow_views_NAME` are the light's own texture and `array<ShadowView, N>`, for engines
-/// that want a lookup of their own beside it.
+/// The variables `shadow_map_NAME` and `shadow_views_NAME` are the light's own texture (`texture_depth_2d_array`, but see
+/// [`ShadowBindings::new`]) and `array<ShadowView, N>`, for engines that want a lookup of their own beside it.
 #[derive(Debug)]
 pub struct ShadowBindings {
     layout: wgpu::BindGroupLayout,
@@ -92,6 +93,10 @@ pub struct ShadowBindings {
 impl ShadowBindings {
     /// Makes layout, bind group and WGSL. Do this once for a set of lights; per frame there is nothing to update.
     ///
+    /// Where the device's shaders cannot gather (OpenGL ES 3.0, WebGL 2), the maps of all filters but
+    /// [`Filter::Hardware`](crate::Filter::Hardware) are `texture_2d_array<f32>`, and each gather is four samples: the same
+    /// visibilities at up to four times the lookups.
+    ///
     /// # Errors
     /// [`BindingsError`] for names that are not WGSL identifiers or not distinct, for sets that exceed the device's limits, and
     /// for a device that is lost, out of memory, or not the lights' own.
@@ -102,9 +107,14 @@ impl ShadowBindings {
         check_names(descriptor.lights)?;
         let samplers = used_samplers(descriptor.lights);
         check_limits(device, descriptor, &samplers)?;
-        let wgsl = emit::wgsl(descriptor, &samplers)?;
+        let access = if samplers.contains(&FilterSampler::Point) {
+            TexelAccess::of(device)
+        } else {
+            TexelAccess::Gathers
+        };
+        let wgsl = emit::wgsl(descriptor, &samplers, access)?;
         let (layout, bind_group) = capture_device_errors(device, || {
-            let layout = create_layout(device, descriptor, &samplers);
+            let layout = create_layout(device, descriptor, &samplers, access);
             let bind_group = create_bind_group(device, descriptor, &samplers, &layout);
             (layout, bind_group)
         })
@@ -252,10 +262,19 @@ pub(crate) fn views_binding(samplers: &[FilterSampler], light: usize) -> u32 {
     (samplers.len() + 2 * light) as u32
 }
 
+/// How a light's map is bound on a device with `access` to texels: for the comparing sampler always as a depth texture.
+pub(crate) fn map_access(receiver: &Receiver<'_>, access: TexelAccess) -> TexelAccess {
+    match receiver.sampling.filter.wgsl().1 {
+        FilterSampler::Comparison => TexelAccess::Gathers,
+        FilterSampler::Point => access,
+    }
+}
+
 fn create_layout(
     device: &wgpu::Device,
     descriptor: &ShadowBindingsDescriptor<'_>,
     samplers: &[FilterSampler],
+    access: TexelAccess,
 ) -> wgpu::BindGroupLayout {
     let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
         binding,
@@ -285,14 +304,8 @@ fn create_layout(
                 min_binding_size: wgpu::BufferSize::new(bytes),
             },
         ));
-        entries.push(entry(
-            views + 1,
-            wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Depth,
-                view_dimension: wgpu::TextureViewDimension::D2Array,
-                multisampled: false,
-            },
-        ));
+        let map = map_access(&source.receiver, access).map_binding();
+        entries.push(entry(views + 1, map));
     }
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: descriptor.label.or(Some("shadow bindings")),

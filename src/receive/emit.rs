@@ -3,17 +3,22 @@
 use std::fmt::Write;
 
 use crate::error::BindingsError;
-use crate::receive::bindings::{ShadowBindingsDescriptor, views_binding};
+use crate::receive::bindings::{ShadowBindingsDescriptor, map_access, views_binding};
 use crate::receive::filter::FilterSampler;
+use crate::receive::texel_access::TexelAccess;
 use crate::receive::{Bias, Receiver, Selection};
 use crate::shader;
 
-/// The text for `descriptor`, whose filters take `samplers`.
+/// The text for `descriptor`, whose filters take `samplers`, on a device with `access` to texels.
 pub(crate) fn wgsl(
     descriptor: &ShadowBindingsDescriptor<'_>,
     samplers: &[FilterSampler],
+    access: TexelAccess,
 ) -> Result<String, BindingsError> {
     let mut modules = vec!["normal"];
+    if samplers.contains(&FilterSampler::Point) {
+        modules.extend(access.module());
+    }
     for (_, source) in descriptor.lights {
         let Receiver {
             sampling,
@@ -38,13 +43,14 @@ pub(crate) fn wgsl(
         );
     }
     for (light, (name, source)) in descriptor.lights.iter().enumerate() {
-        text += &light_wgsl(name, &source.receiver, views_binding(samplers, light));
+        let binding = views_binding(samplers, light);
+        text += &light_wgsl(name, &source.receiver, binding, access);
     }
     Ok(text)
 }
 
 /// Bindings and functions of one light.
-fn light_wgsl(name: &str, receiver: &Receiver<'_>, binding: u32) -> String {
+fn light_wgsl(name: &str, receiver: &Receiver<'_>, binding: u32, access: TexelAccess) -> String {
     let count = receiver.view_count;
     let (parameter, argument) = if receiver.indexed {
         ("index: u32, ", "index, ")
@@ -65,7 +71,7 @@ fn light_wgsl(name: &str, receiver: &Receiver<'_>, binding: u32) -> String {
     format!(
         "
 @group(SHADOW_GROUP) @binding({binding}) var<uniform> shadow_views_{name}: array<ShadowView, {count}>;
-@group(SHADOW_GROUP) @binding({map}) var shadow_map_{name}: texture_depth_2d_array;
+@group(SHADOW_GROUP) @binding({map}) var shadow_map_{name}: {map_type};
 
 // The view, and so the layer, that serves a place; {count} where none does.
 fn shadow_view_{name}({parameter}position: vec3<f32>) -> u32 {{
@@ -77,6 +83,7 @@ fn shadow_{name}({parameter}position: vec3<f32>, normal: vec3<f32>) -> f32 {{
 {lookup}}}
 ",
         map = binding + 1,
+        map_type = map_access(receiver, access).map_wgsl(),
     )
 }
 

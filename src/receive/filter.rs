@@ -18,6 +18,9 @@ const PENUMBRA_REACH_TEXELS: f64 = 33.0;
 /// | `DirectionGrid` | 64 | 64 gathers | 0.5 a sample |
 /// | `DirectionStar` | 20 | 20 gathers | 0.5 a sample |
 ///
+/// Where shaders cannot gather (OpenGL ES 3.0, WebGL 2), a gather is four samples, one for `Nearest` and directions if the
+/// compiler sees that the others are not used.
+///
 /// A sharpness of 1 leaves a kernel's ramp as it is; a larger one stretches it around one half, `(v - ½) · sharpness + ½`, so
 /// that an edge is placed as well as by the wide kernel and blurred as little as by a narrow one. Below 1 a shadow never
 /// becomes fully dark; very large values bring the stairs of `Nearest` back.

@@ -1,13 +1,14 @@
 //! Top floor: what a receiver asks a map, and how the engine's shader reaches it.
 //!
 //! ```text
-//! filter.rs     which texels count, and how much
-//! bias.rs       how a receiver is kept from shadowing itself
+//! filter.rs        which texels count, and how much
+//! bias.rs          how a receiver is kept from shadowing itself
 //! check_sampling.rs  what filter and bias must be
-//! uniforms.rs   the layout that Rust and WGSL share
-//! reference.rs  the WGSL's arithmetic once more in f64
-//! bindings.rs   one bind group for a set of lights
-//! emit.rs       the WGSL for exactly that set
+//! uniforms.rs      the layout that Rust and WGSL share
+//! reference.rs     the WGSL's arithmetic once more in f64
+//! texel_access.rs  gathers, or samples where a device has none
+//! bindings.rs      one bind group for a set of lights
+//! emit.rs          the WGSL for exactly that set
 //! ```
 
 mod bias;
@@ -16,6 +17,7 @@ mod check_sampling;
 mod emit;
 mod filter;
 pub mod reference;
+mod texel_access;
 mod uniforms;
 
 pub use bias::Bias;

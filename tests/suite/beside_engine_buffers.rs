@@ -6,16 +6,13 @@
 use std::collections::BTreeSet;
 
 use image::RgbaImage;
-use wgpu_shadows::{Bias, Filter, ShadowBindings, ShadowBindingsDescriptor, shader};
+use wgpu_shadows::{Bias, Filter, shader};
 
 use crate::support::child;
+use crate::support::floor::{draw, own_layout, picture, pipeline, stages};
 use crate::support::gpu::{Gpu, vulkan};
 use crate::support::lights::{Kind, Light, stage};
-use crate::support::picture::{COLOR, color_pass, color_target};
-use crate::support::readback;
 
-const SIZE: u32 = 24;
-/// A set of lights by their kinds.
 type Set = Vec<Kind>;
 
 /// Each kind twice, and sets of different kinds, among them one with all.
@@ -62,7 +59,7 @@ fn combinations() -> usize {
 #[test]
 fn any_lights_draw_behind_any_buffers() {
     let name = "suite::beside_engine_buffers::any_lights_draw_behind_any_buffers";
-    if let Some(drawn) = child::counted(name, draw_all) {
+    if let Some(drawn) = child::counted(name, &[], draw_all) {
         assert_eq!(drawn, combinations());
     }
 }
@@ -93,95 +90,6 @@ fn draw_all() -> usize {
     drawn
 }
 
-/// The mean visibility of the lights over the floor, seen from above.
-fn picture(gpu: &Gpu, lights: &[(Kind, Box<dyn Light>)], group: u32, buffers: u32) -> RgbaImage {
-    let names: Vec<_> = ('a'..).take(lights.len()).map(String::from).collect();
-    let sources: Vec<_> = names
-        .iter()
-        .zip(lights)
-        .map(|(name, (_, light))| (name.as_str(), light.source()))
-        .collect();
-    let descriptor = ShadowBindingsDescriptor {
-        group,
-        lights: &sources,
-        ..Default::default()
-    };
-    let bindings = ShadowBindings::new(&gpu.device, &descriptor).expect("valid bindings");
-    let calls: Vec<_> = names
-        .iter()
-        .zip(lights)
-        .map(|(name, (kind, _))| kind.call(name, "position", "vec3<f32>(0.0, 1.0, 0.0)"))
-        .collect();
-    let own: Vec<_> = (0..group)
-        .flat_map(|group| (0..buffers).map(move |binding| (group, binding)))
-        .collect();
-    let declarations: String = own
-        .iter()
-        .map(|(group, binding)| {
-            let slot = format!("@group({group}) @binding({binding})");
-            format!("{slot} var<uniform> own_{group}_{binding}: vec4<f32>;\n")
-        })
-        .collect();
-    // The engine's buffers hold zeros, which a compiler cannot know.
-    let zeros: String = own
-        .iter()
-        .map(|(group, binding)| format!(" + own_{group}_{binding}.x"))
-        .collect();
-    let source = format!(
-        "{}{declarations}{}",
-        bindings.wgsl(),
-        stages(&format!(
-            "({}) / {}.0{zeros}",
-            calls.join(" + "),
-            lights.len()
-        ))
-    );
-    let own_layout = own_layout(gpu, buffers);
-    let own_group = own_group(gpu, &own_layout, buffers);
-    let mut layouts = vec![Some(&own_layout); group as usize];
-    layouts.push(Some(bindings.layout()));
-    let pipeline = pipeline(gpu, &source, &layouts);
-    let mut groups = vec![&own_group; group as usize];
-    groups.push(bindings.bind_group());
-    draw(gpu, &pipeline, &groups)
-}
-
-/// A vertex stage that covers the target, and a fragment stage that shows `value`, a WGSL expression over `position` on the
-/// floor.
-fn stages(value: &str) -> String {
-    format!(
-        "
-@vertex
-fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {{
-    let corner = vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0;
-    return vec4<f32>(corner, 0.0, 1.0);
-}}
-
-@fragment
-fn fragment(@builtin(position) pixel: vec4<f32>) -> @location(0) vec4<f32> {{
-    let place = pixel.xy * (3.8 / {SIZE}.0) - 1.9;
-    let position = vec3<f32>(place.x, 0.0, place.y);
-    return vec4<f32>(vec3<f32>({value}), 1.0);
-}}
-"
-    )
-}
-
-fn draw(gpu: &Gpu, pipeline: &wgpu::RenderPipeline, groups: &[&wgpu::BindGroup]) -> RgbaImage {
-    let target = color_target(gpu, SIZE);
-    let mut encoder = gpu.encoder();
-    {
-        let mut pass = color_pass(&mut encoder, &target);
-        pass.set_pipeline(pipeline);
-        for (index, group) in (0..).zip(groups) {
-            pass.set_bind_group(index, *group, &[]);
-        }
-        pass.draw(0..3, 0..1);
-    }
-    gpu.submit(encoder);
-    readback::rgba8(gpu, &target)
-}
-
 /// Schemes of bias, as an engine with bindings of its own calls them.
 const BIASES: [(Bias, &str); 3] = [
     (Bias::Auto, "plane"),
@@ -202,7 +110,7 @@ const BEFORE_OWN_VIEW: std::ops::Range<u32> = 0..9;
 #[test]
 fn own_views_draw_behind_any_buffers() {
     let name = "suite::beside_engine_buffers::own_views_draw_behind_any_buffers";
-    if let Some(drawn) = child::counted(name, draw_own) {
+    if let Some(drawn) = child::counted(name, &[], draw_own) {
         assert_eq!(drawn, 2 * BIASES.len() * BEFORE_OWN_VIEW.count());
     }
 }
@@ -315,74 +223,4 @@ fn own_light(position: vec3<f32>, normal: vec3<f32>) -> f32 {{
 fn assert_both_greys(picture: &RgbaImage, name: &str) {
     let greys: BTreeSet<_> = picture.pixels().map(|pixel| pixel.0[0]).collect();
     assert!(greys.len() > 1, "{name}: {greys:?}");
-}
-
-fn own_layout(gpu: &Gpu, buffers: u32) -> wgpu::BindGroupLayout {
-    let entries: Vec<_> = (0..buffers)
-        .map(|binding| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty: wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Uniform,
-                has_dynamic_offset: false,
-                min_binding_size: None,
-            },
-            count: None,
-        })
-        .collect();
-    gpu.device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("the engine's own"),
-            entries: &entries,
-        })
-}
-
-fn own_group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, buffers: u32) -> wgpu::BindGroup {
-    let zeros = gpu.buffer(&[0.0_f32; 4], wgpu::BufferUsages::UNIFORM);
-    let entries: Vec<_> = (0..buffers)
-        .map(|binding| wgpu::BindGroupEntry {
-            binding,
-            resource: zeros.as_entire_binding(),
-        })
-        .collect();
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("the engine's own"),
-        layout,
-        entries: &entries,
-    })
-}
-
-fn pipeline(
-    gpu: &Gpu,
-    source: &str,
-    layouts: &[Option<&wgpu::BindGroupLayout>],
-) -> wgpu::RenderPipeline {
-    let device = &gpu.device;
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: None,
-        bind_group_layouts: layouts,
-        immediate_size: 0,
-    });
-    let module = gpu.shader(source);
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: None,
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("vertex"),
-            compilation_options: Default::default(),
-            buffers: &[],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some("fragment"),
-            compilation_options: Default::default(),
-            targets: &[Some(COLOR.into())],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
 }

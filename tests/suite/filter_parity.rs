@@ -33,7 +33,7 @@ pub(super) const BIASES: [Bias; 3] = [
 const POINTS: usize = 4000;
 
 /// Every filter, each sharpened kind once more with a sharpness of its own, and a soft light.
-fn filters() -> impl Iterator<Item = Filter> {
+pub(super) fn filters() -> impl Iterator<Item = Filter> {
     Filter::ALL.into_iter().chain([
         Filter::Bilinear { sharpness: 4.0 },
         Filter::TentNarrow { sharpness: 3.0 },

@@ -2,40 +2,18 @@
 //! mirror has no more acne than the scene itself.
 
 use glam::{DMat4, DVec3, Mat4, Vec3};
-use image::RgbaImage;
 use wgpu_shadows::{
     Bias, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, ShadowBindings, ShadowBindingsDescriptor, shader,
+    DirectionalShadowDescriptor, ShadowBindings, ShadowBindingsDescriptor,
 };
 
 use crate::support::camera::{Camera, Lens};
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::picture::{COLOR, color_target, depth_target, scene_pass};
+use crate::support::gpu::gpu;
 use crate::support::probe::record;
-use crate::support::readback;
 use crate::support::scene::{Mesh, Scene, occluded};
+use crate::support::triangles::{SIZE, VERTEX, draw};
 
-const SIZE: u32 = 128;
 const LIGHT: Vec3 = Vec3::new(-0.7, -1.0, 0.35);
-
-const VERTEX: &str = "
-struct Eye {
-    clip_from_render: mat4x4<f32>,
-    // Of an orthographic camera the direction toward it, with w = 0; of a perspective one its place, with w = 1.
-    place: vec4<f32>,
-}
-@group(0) @binding(0) var<uniform> eye: Eye;
-
-struct Varying {
-    @builtin(position) clip: vec4<f32>,
-    @location(0) position: vec3<f32>,
-}
-
-@vertex
-fn vertex(@location(0) position: vec3<f32>) -> Varying {
-    return Varying(eye.clip_from_render * vec4<f32>(position, 1.0), position);
-}
-";
 
 /// Visibility, and where something was drawn at all.
 const VISIBILITY: &str = "
@@ -295,161 +273,4 @@ fn a_mirror_shows_no_acne() {
         }
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
-}
-
-/// Both windings, both handednesses, and sides of any length: a triangle that leans has its own normal on the side that is told.
-#[test]
-fn normals_are_on_the_side_that_is_told() {
-    let gpu = gpu();
-    let corners = [
-        Vec3::new(-2.0, -1.0, -2.0),
-        Vec3::new(2.0, -2.0, 0.5),
-        Vec3::new(0.3, 3.0, 0.7),
-    ];
-    let normal = (corners[1] - corners[0])
-        .cross(corners[2] - corners[0])
-        .normalize();
-    let modules = shader::compose(&["normal"]).expect("a module of the table");
-    let fragment = "
-@fragment
-fn fragment(in: Varying) -> @location(0) vec4<f32> {
-    return vec4<f32>(shadow_geometric_normal(in.position, eye.place.xyz) * 0.5 + 0.5, 1.0);
-}
-";
-    let source = format!("{modules}{VERTEX}{fragment}");
-    let aslant = normal + 0.9 * normal.any_orthonormal_vector();
-    let sides = [1.0, 1e-30, 1e-36, 1e6, 1e30, 3e38].map(|length| aslant.normalize() * length);
-    for mirrored in [1.0, -1.0] {
-        for turned in [false, true] {
-            let mut vertices = corners;
-            if turned {
-                vertices.swap(1, 2);
-            }
-            // The steps of a pixel in positions of all sizes: the place is scaled, and clip space with it.
-            for scale in [1.0, 1e-6, 1e-30, 1e-34, 1e6, 1e30] {
-                let vertices = vertices.map(|corner| corner * scale);
-                let clip = Mat4::from_scale(Vec3::new(0.3 * mirrored / scale, 0.3 / scale, 0.0));
-                let told = |side: Vec3| {
-                    let uniform: Vec<f32> = clip
-                        .to_cols_array()
-                        .into_iter()
-                        .chain(side.extend(0.0).to_array())
-                        .collect();
-                    let picture = draw(gpu, &source, &uniform, &vertices, None);
-                    let [x, y, z, _] = picture.get_pixel(SIZE / 2, SIZE / 2).0;
-                    [x, y, z].map(|byte| f32::from(byte) / 127.5 - 1.0)
-                };
-                let context = format!("mirrored {mirrored}, turned {turned}, scale {scale}");
-                let near = |seen: [f32; 3], wanted: Vec3| {
-                    // A step of 8 bits is 1/127.5, half of it rounding, and the derivatives' own error far below.
-                    Vec3::from_array(seen).abs_diff_eq(wanted, 0.5 / 127.5 + 1e-3)
-                };
-                for side in sides {
-                    for sign in [1.0, -1.0] {
-                        let seen = told(side * sign);
-                        assert!(
-                            near(seen, normal * sign),
-                            "{context}: {seen:?} for the side {}",
-                            side * sign
-                        );
-                    }
-                }
-                for side in [Vec3::ZERO, Vec3::NAN] {
-                    let seen = told(side);
-                    assert!(
-                        near(seen, normal) || near(seen, -normal),
-                        "{context}: {seen:?} for {side}"
-                    );
-                }
-            }
-        }
-    }
-}
-
-/// A picture of triangles, with the lights in group 1 if there are any.
-fn draw(
-    gpu: &Gpu,
-    source: &str,
-    uniform: &[f32],
-    vertices: &[Vec3],
-    bindings: Option<&ShadowBindings>,
-) -> RgbaImage {
-    let device = &gpu.device;
-    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("eye"),
-        entries: &[wgpu::BindGroupLayoutEntry {
-            binding: 0,
-            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-            ty: wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Uniform,
-                has_dynamic_offset: false,
-                min_binding_size: None,
-            },
-            count: None,
-        }],
-    });
-    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("eye"),
-        layout: &layout,
-        entries: &[wgpu::BindGroupEntry {
-            binding: 0,
-            resource: gpu
-                .buffer(uniform, wgpu::BufferUsages::UNIFORM)
-                .as_entire_binding(),
-        }],
-    });
-    let mut layouts = vec![Some(&layout)];
-    layouts.extend(bindings.map(|bindings| Some(bindings.layout())));
-    let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("mirrored view"),
-        bind_group_layouts: &layouts,
-        immediate_size: 0,
-    });
-    let module = gpu.shader(source);
-    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("mirrored view"),
-        layout: Some(&pipeline_layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("vertex"),
-            compilation_options: Default::default(),
-            buffers: &[Some(wgpu::VertexBufferLayout {
-                array_stride: 12,
-                step_mode: wgpu::VertexStepMode::Vertex,
-                attributes: &wgpu::vertex_attr_array![0 => Float32x3],
-            })],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: wgpu::TextureFormat::Depth32Float,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::Less),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        }),
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some("fragment"),
-            compilation_options: Default::default(),
-            targets: &[Some(COLOR.into())],
-        }),
-        multiview_mask: None,
-        cache: None,
-    });
-    let (target, depth) = (color_target(gpu, SIZE), depth_target(gpu, SIZE));
-    let vertex_buffer = gpu.buffer(vertices, wgpu::BufferUsages::VERTEX);
-    let mut encoder = gpu.encoder();
-    {
-        let mut pass = scene_pass(&mut encoder, &target, &depth);
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        if let Some(bindings) = bindings {
-            pass.set_bind_group(bindings.group(), bindings.bind_group(), &[]);
-        }
-        pass.set_vertex_buffer(0, vertex_buffer.slice(..));
-        pass.draw(0..vertices.len() as u32, 0..1);
-    }
-    gpu.submit(encoder);
-    readback::rgba8(gpu, &target)
 }

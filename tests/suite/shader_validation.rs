@@ -78,9 +78,10 @@ fn every_requirement_is_needed_and_direct() {
             .into_iter()
             .filter(|name| !own.contains(name))
             .collect();
+        // What a module uses of one that can be replaced, it uses of what replaces it, too, and requires only the former.
         let used: BTreeSet<&str> = MODULES
             .iter()
-            .filter(|other| other.name != module.name)
+            .filter(|other| other.name != module.name && other.replaces.is_none())
             .filter(|other| {
                 wgsl::top_level_names(other.source)
                     .iter()
@@ -176,7 +177,7 @@ fn texts_are_plain_and_names_are_the_librarys_own() {
     report(&failures);
 }
 
-/// All modules go together, in one text, but for passes that are drawn in each other's place: no two modules declare the same
+/// All modules go together, in one text, but for those that take another's place and passes that are drawn in each other's: no two modules declare the same
 /// name, unless it is that of an entry point in both.
 #[test]
 fn names_do_not_collide() {
@@ -193,6 +194,11 @@ fn names_do_not_collide() {
     for (index, module) in MODULES.iter().enumerate() {
         let names = wgsl::top_level_names(module.source);
         for other in &MODULES[index + 1..] {
+            let replaces =
+                |one: &ShaderModule, another: &ShaderModule| one.replaces == Some(another.name);
+            if replaces(module, other) || replaces(other, module) {
+                continue;
+            }
             for name in names.intersection(&wgsl::top_level_names(other.source)) {
                 let both = [module, other].map(|module| entry_points(module).contains(name));
                 if both != [true, true] {

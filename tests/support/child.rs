@@ -4,11 +4,15 @@ use std::process::Command;
 
 const MARK: &str = "SHADOW_TEST_CHILD";
 
-/// Runs `body` in a child process and returns the count that it came to.
+/// Runs `body` in a child process, with `variables` in its environment, and returns the count that it came to.
 ///
 /// `test` is the full name of the test that calls this: the child is this very binary, told to run that test alone, and there
 /// the call runs `body`. What the child wrote is part of the panic where it fails, crashes, or runs nothing.
-pub fn counted(test: &str, body: impl FnOnce() -> usize) -> Option<usize> {
+pub fn counted(
+    test: &str,
+    variables: &[(&str, &str)],
+    body: impl FnOnce() -> usize,
+) -> Option<usize> {
     if std::env::var_os(MARK).is_some() {
         println!("\n{MARK} {}", body());
         return None;
@@ -17,6 +21,7 @@ pub fn counted(test: &str, body: impl FnOnce() -> usize) -> Option<usize> {
     let output = Command::new(binary)
         .args([test, "--exact", "--nocapture", "--test-threads=1"])
         .env(MARK, "1")
+        .envs(variables.iter().copied())
         .output()
         .expect("the test binary starts");
     let text = String::from_utf8_lossy(&output.stdout);

@@ -47,6 +47,11 @@ impl Gpu {
         Self::of(&adapter, &request)
     }
 
+    /// Does the machine have an adapter of one of these backends?
+    pub fn is_there(backends: wgpu::Backends) -> bool {
+        !adapters(backends).is_empty()
+    }
+
     /// Two devices of one instance: wgpu tells the objects of one from those of the other.
     pub fn two() -> [Self; 2] {
         let request = GpuRequest::default();
@@ -131,11 +136,7 @@ impl Gpu {
 
 fn adapter(request: &GpuRequest) -> wgpu::Adapter {
     let backends = request.backend.unwrap_or_else(backends);
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
-        backends,
-        ..wgpu::InstanceDescriptor::new_without_display_handle()
-    });
-    let adapters = pollster::block_on(instance.enumerate_adapters(backends));
+    let adapters = adapters(backends);
     // A software adapter gives every machine the same pixels, so it comes first.
     let software =
         |adapter: &&wgpu::Adapter| adapter.get_info().device_type == wgpu::DeviceType::Cpu;
@@ -150,6 +151,14 @@ fn adapter(request: &GpuRequest) -> wgpu::Adapter {
                  mesa-vulkan-drivers` (Vulkan) or `libegl1 libgl1-mesa-dri` (OpenGL)."
             )
         })
+}
+
+fn adapters(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+        backends,
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
+    });
+    pollster::block_on(instance.enumerate_adapters(backends))
 }
 
 fn backends() -> wgpu::Backends {

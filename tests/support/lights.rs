@@ -114,7 +114,8 @@ impl Kind {
 
     /// The light over `stage`, after one frame.
     pub fn lit(self, gpu: &Gpu, stage: &Scene, filter: Filter, bias: Bias) -> Box<dyn Light> {
-        const MAP_SIZE: u32 = 96;
+        // No multiple of what pictures have, so that no pixel lies between two texels.
+        const MAP_SIZE: u32 = 97;
         let (device, casters) = (&gpu.device, stage.list());
         let sun = DirectionalLight::new(Vec3::new(0.5, -1.0, 0.3));
         let spot_light = SpotLight {
@@ -214,8 +215,8 @@ const PLACE: DVec3 = DVec3::new(-1.2, 2.6, -0.6);
 
 const EVERYWHERE: [Aabb; 1] = [Aabb::new(Vec3::splat(-9.0), Vec3::splat(9.0))];
 
-/// A camera that sees the whole floor.
-fn camera() -> Camera {
+/// A camera that sees the whole floor: what the cascades of suns are for.
+pub fn camera() -> Camera {
     Camera::modern(DVec3::new(0.4, 4.0, 4.5), DVec3::ZERO, 0.9, 1.0)
 }
 

@@ -3,23 +3,24 @@
 // Rust twin: src/debug_view.rs. Requires: view, cube_face, fullscreen.
 
 struct ShadowDebugView {
-    // 1 where depth is near / distance (a local light), 0 where it is linear (a directional one).
-    local: u32,
+    // x is 1 where depth is near / distance (a local light), 0 where it is linear (a directional one). A vector, since uniforms
+    // are multiples of 16 bytes in OpenGL ES 3.0.
+    local: vec4<u32>,
 }
 
 @group(0) @binding(0) var<uniform> shadow_debug: ShadowDebugView;
 @group(0) @binding(1) var<uniform> shadow_debug_views: array<ShadowView, 6>;
-@group(0) @binding(2) var shadow_debug_map: texture_depth_2d_array;
+@group(0) @binding(2) var shadow_debug_map: texture_2d_array<f32>;
 @group(0) @binding(3) var shadow_debug_sampler: sampler;
 
 // Distance from the light as a share of its reach, for the ray through `texel`.
 fn shadow_debug_grey(view: ShadowView, texel: vec2<f32>, ray: vec3<f32>) -> f32 {
     let last = view.map_size - 1.0;
     let inside = clamp(floor(texel), vec2<f32>(0.0), vec2<f32>(last));
-    // A gather and not a load: GLSL cannot load from a depth texture. Its last component is the first texel.
-    let corner = (inside + 1.0) / view.map_size;
-    let depth = textureGather(shadow_debug_map, shadow_debug_sampler, corner, view.layer).w;
-    if shadow_debug.local == 0u {
+    let center = (inside + 0.5) / view.map_size;
+    // A sample and not a gather, which GLSL ES 3.00 lacks, nor a load; see `texels_by_samples`.
+    let depth = textureSampleLevel(shadow_debug_map, shadow_debug_sampler, center, view.layer, 0.0).x;
+    if shadow_debug.local.x == 0u {
         return 1.0 - depth;
     }
     // place.z is the near distance, and depth = near / distance along the axis.

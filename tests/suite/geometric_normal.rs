@@ -1,0 +1,76 @@
+//! `shadow_geometric_normal` by itself.
+
+use glam::{Mat4, Vec3};
+use wgpu_shadows::shader;
+
+use crate::support::gpu::gpu;
+use crate::support::triangles::{SIZE, VERTEX, draw};
+
+/// Both windings, both handednesses, and sides of any length: a triangle that leans has its own normal on the side that is told.
+#[test]
+fn normals_are_on_the_side_that_is_told() {
+    let gpu = gpu();
+    let corners = [
+        Vec3::new(-2.0, -1.0, -2.0),
+        Vec3::new(2.0, -2.0, 0.5),
+        Vec3::new(0.3, 3.0, 0.7),
+    ];
+    let normal = (corners[1] - corners[0])
+        .cross(corners[2] - corners[0])
+        .normalize();
+    let modules = shader::compose(&["normal"]).expect("a module of the table");
+    let fragment = "
+@fragment
+fn fragment(in: Varying) -> @location(0) vec4<f32> {
+    return vec4<f32>(shadow_geometric_normal(in.position, eye.place.xyz) * 0.5 + 0.5, 1.0);
+}
+";
+    let source = format!("{modules}{VERTEX}{fragment}");
+    let aslant = normal + 0.9 * normal.any_orthonormal_vector();
+    let sides = [1.0, 1e-30, 1e-36, 1e6, 1e30, 3e38].map(|length| aslant.normalize() * length);
+    for mirrored in [1.0, -1.0] {
+        for turned in [false, true] {
+            let mut vertices = corners;
+            if turned {
+                vertices.swap(1, 2);
+            }
+            // The steps of a pixel in positions of all sizes: the place is scaled, and clip space with it.
+            for scale in [1.0, 1e-6, 1e-30, 1e-34, 1e6, 1e30] {
+                let vertices = vertices.map(|corner| corner * scale);
+                let clip = Mat4::from_scale(Vec3::new(0.3 * mirrored / scale, 0.3 / scale, 0.0));
+                let told = |side: Vec3| {
+                    let uniform: Vec<f32> = clip
+                        .to_cols_array()
+                        .into_iter()
+                        .chain(side.extend(0.0).to_array())
+                        .collect();
+                    let picture = draw(gpu, &source, &uniform, &vertices, None);
+                    let [x, y, z, _] = picture.get_pixel(SIZE / 2, SIZE / 2).0;
+                    [x, y, z].map(|byte| f32::from(byte) / 127.5 - 1.0)
+                };
+                let context = format!("mirrored {mirrored}, turned {turned}, scale {scale}");
+                let near = |seen: [f32; 3], wanted: Vec3| {
+                    // A step of 8 bits is 1/127.5, half of it rounding, and the derivatives' own error far below.
+                    Vec3::from_array(seen).abs_diff_eq(wanted, 0.5 / 127.5 + 1e-3)
+                };
+                for side in sides {
+                    for sign in [1.0, -1.0] {
+                        let seen = told(side * sign);
+                        assert!(
+                            near(seen, normal * sign),
+                            "{context}: {seen:?} for the side {}",
+                            side * sign
+                        );
+                    }
+                }
+                for side in [Vec3::ZERO, Vec3::NAN] {
+                    let seen = told(side);
+                    assert!(
+                        near(seen, normal) || near(seen, -normal),
+                        "{context}: {seen:?} for {side}"
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! Where shaders cannot gather the library samples instead: every filter gives the same visibilities, to the bit, as by the
+//! gathers that `filter_parity` holds against the twin in f64.
+
+use wgpu_shadows::shader::{self, MODULES};
+use wgpu_shadows::{ShadowBindings, ShadowBindingsDescriptor};
+
+use crate::suite::filter_parity::{BIASES, Lit, filters, points, scene};
+use crate::support::gpu::{Gpu, gpu};
+use crate::support::probe::{Point, PointShader, SunProbe};
+use crate::support::wgsl;
+
+/// What `ShadowBindings` emits for the light where there is no gather, with the layout and group that go with it.
+fn by_samples(gpu: &Gpu, lit: &Lit, points: &[Point]) -> Vec<f32> {
+    let descriptor = ShadowBindingsDescriptor {
+        lights: &[("sun", lit.shadow.source())],
+        ..Default::default()
+    };
+    let bindings = ShadowBindings::new(&gpu.device, &descriptor).expect("valid bindings");
+    let source = |name: &str| {
+        let mut modules = MODULES.iter().filter(|module| module.name == name);
+        modules.next().expect("a module of the table").source
+    };
+    let map = "var shadow_map_sun: texture_depth_2d_array;";
+    for part in [source("texels"), map] {
+        assert!(bindings.wgsl().contains(part), "{part}");
+    }
+    let text = bindings
+        .wgsl()
+        .replace(source("texels"), source("texels_by_samples"))
+        .replace(map, "var shadow_map_sun: texture_2d_array<f32>;");
+    let types = [
+        wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering),
+        wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: false },
+            view_dimension: wgpu::TextureViewDimension::D2Array,
+            multisampled: false,
+        },
+    ];
+    let entries: Vec<_> = (0..)
+        .zip(types)
+        .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty,
+            count: None,
+        })
+        .collect();
+    let layout = gpu
+        .device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("by samples"),
+            entries: &entries,
+        });
+    let sampler = gpu.device.create_sampler(&Default::default());
+    let resources = [
+        wgpu::BindingResource::Sampler(&sampler),
+        lit.shadow.uniform_buffer().as_entire_binding(),
+        wgpu::BindingResource::TextureView(lit.shadow.texture_view()),
+    ];
+    let entries: Vec<_> = (0..)
+        .zip(resources)
+        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+        .collect();
+    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("by samples"),
+        layout: &layout,
+        entries: &entries,
+    });
+    let value = "shadow_sun(point.position, point.normal)";
+    PointShader::new(gpu, &text, "f32", value, &layout).ask(gpu, &group, points)
+}
+
+#[test]
+fn samples_give_what_gathers_give() {
+    let gpu = gpu();
+    let scene = scene();
+    let mut failures = Vec::new();
+    for filter in filters().filter(|filter| filter.compares_each_texel()) {
+        for bias in BIASES {
+            // No power of two, so that coordinates are rounded on their way to the sampler; much larger than the kernel.
+            let map_size = (93.0 + 9.0 * filter.reach_texels()) as u32;
+            let lit = Lit::new(gpu, &scene, map_size, filter, bias);
+            let points = points(&scene, u64::from(map_size));
+            let wanted = SunProbe::new(gpu, &lit.shadow).ask(gpu, &points);
+            let seen = by_samples(gpu, &lit, &points);
+            let differ = |(wanted, seen): &(&f32, &f32)| wanted.to_bits() != seen.to_bits();
+            let different = wanted.iter().zip(&seen).filter(differ).count();
+            let dark = wanted.iter().filter(|wanted| **wanted < 0.5).count();
+            if different > 0 || dark < points.len() / 20 {
+                let count = points.len();
+                failures.push(format!(
+                    "{filter:?} {bias:?}: {different} of {count} differ, {dark} are dark"
+                ));
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// With the module named, no filter that compares each texel gathers any more, and without it nothing samples a map as floats.
+#[test]
+fn the_module_takes_the_place_of_gathers() {
+    let filters: Vec<_> = MODULES
+        .iter()
+        .map(|module| module.name)
+        .filter(|name| name.starts_with("filter_"))
+        .collect();
+    assert!(filters.len() >= 9, "{filters:?}");
+    for name in filters {
+        let gathers = shader::compose(&[name]).expect("a module of the table");
+        assert!(!gathers.contains("textureSampleLevel("), "{name}");
+        let samples = shader::compose(&["texels_by_samples", name]).expect("modules of the table");
+        assert!(!samples.contains("textureGather("), "{name}");
+        wgsl::validate(&samples).unwrap_or_else(|error| panic!("{name}: {error}"));
+    }
+}

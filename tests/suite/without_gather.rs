@@ -1,0 +1,260 @@
+//! A device whose shaders cannot gather, as those of WebGL 2: OpenGL ES 3.0, which Mesa gives a process whose environment asks
+//! for it. There the library draws what it draws elsewhere.
+
+use image::RgbaImage;
+use wgpu_shadows::{Bias, DebugPicture, DebugView, Filter, shader};
+
+use crate::support::child;
+use crate::support::floor::{SIZE, picture};
+use crate::support::gpu::{Gpu, GpuRequest, gpu, vulkan};
+use crate::support::lights::{Kind, Light, camera, stage};
+use crate::support::picture::{COLOR, color_pass, color_target};
+use crate::support::readback;
+
+/// Desktop OpenGL is not to be had, and OpenGL ES is 3.0. What is compared with comes from Vulkan, whatever the run is on.
+const ES_3_0: [(&str, &str); 3] = [
+    ("SHADOW_TEST_BACKEND", "vulkan"),
+    ("MESA_GL_VERSION_OVERRIDE", "3.0"),
+    ("MESA_GLES_VERSION_OVERRIDE", "3.0"),
+];
+
+/// The device, or none where the machine has no OpenGL, or not Mesa's, which listens to these variables.
+fn es_3_0() -> Option<Gpu> {
+    if !Gpu::is_there(wgpu::Backends::GL) {
+        return None;
+    }
+    let gpu = Gpu::new(GpuRequest {
+        backend: Some(wgpu::Backends::GL),
+        limits: wgpu::Limits::downlevel_webgl2_defaults(),
+        ..Default::default()
+    });
+    let is_mesa = gpu.adapter.driver_info.contains("Mesa");
+    assert!(
+        !is_mesa || gpu.adapter.driver_info.contains("OpenGL ES 3.0"),
+        "{}",
+        gpu.describe()
+    );
+    is_mesa.then_some(gpu)
+}
+
+/// All was drawn, or nothing where there is no such device: not on a run on Mesa's OpenGL.
+fn assert_drawn(drawn: usize, all: usize) {
+    let adapter = &gpu().adapter;
+    let has_mesa = adapter.backend == wgpu::Backend::Gl && adapter.driver_info.contains("Mesa");
+    assert!(
+        drawn == all || (drawn == 0 && !has_mesa),
+        "{drawn} of {all}"
+    );
+}
+
+/// Filters of every kernel, and the sampler's own, which needs no gather.
+fn filters(kind: Kind) -> Vec<Filter> {
+    let mut filters = vec![
+        Filter::default(),
+        Filter::Hardware,
+        Filter::Nearest,
+        Filter::Box,
+        Filter::Bilinear { sharpness: 1.0 },
+        Filter::TentMedium { sharpness: 1.0 },
+        Filter::TentWide { sharpness: 1.0 },
+        Filter::Penumbra { light_size: 0.1 },
+        Filter::PenumbraTurned { light_size: 0.1 },
+    ];
+    if kind.has_cube() {
+        filters.push(Filter::DirectionStar { radius: 0.05 });
+    }
+    filters
+}
+
+#[test]
+fn lights_draw_without_gather() {
+    let name = "suite::without_gather::lights_draw_without_gather";
+    if let Some(drawn) = child::counted(name, &ES_3_0, draw_lights) {
+        let all: usize = Kind::ALL.iter().map(|kind| filters(*kind).len()).sum();
+        assert_drawn(drawn, all);
+    }
+}
+
+fn draw_lights() -> usize {
+    let Some(gpu) = es_3_0() else {
+        return 0;
+    };
+    assert!(!gathers(&gpu), "{} gathers", gpu.describe());
+    let mut drawn = 0;
+    for kind in Kind::ALL {
+        for filter in filters(kind) {
+            let pictures = [vulkan(), &gpu].map(|gpu| {
+                let light = kind.lit(gpu, &stage(gpu), filter, Bias::Auto);
+                picture(gpu, &[(kind, light)], 1, 1)
+            });
+            assert_same(&pictures, &format!("{kind:?} {filter:?}"));
+            drawn += 1;
+        }
+    }
+    drawn
+}
+
+/// Can a pipeline of the device's gather from a map?
+fn gathers(gpu: &Gpu) -> bool {
+    let source = shader::compose(&["filter_nearest", "texels"]).expect("a module of the table")
+        + "
+@group(0) @binding(0) var map: texture_depth_2d_array;
+@group(0) @binding(1) var map_sampler: sampler;
+
+@vertex
+fn vertex() -> @builtin(position) vec4<f32> {
+    return vec4<f32>(0.0);
+}
+
+@fragment
+fn fragment() -> @location(0) vec4<f32> {
+    var receiver: ShadowReceiver;
+    return vec4<f32>(shadow_filter_nearest(map, map_sampler, receiver));
+}
+";
+    let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Internal);
+    let module = gpu.shader(&source);
+    let _pipeline = gpu
+        .device
+        .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: None,
+            layout: None,
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vertex"),
+                compilation_options: Default::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: None,
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("fragment"),
+                compilation_options: Default::default(),
+                targets: &[Some(COLOR.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+    pollster::block_on(scope.pop()).is_none()
+}
+
+#[test]
+fn debug_views_draw_without_gather() {
+    let name = "suite::without_gather::debug_views_draw_without_gather";
+    if let Some(drawn) = child::counted(name, &ES_3_0, draw_debug_views) {
+        assert_drawn(drawn, 3);
+    }
+}
+
+fn draw_debug_views() -> usize {
+    let Some(gpu) = es_3_0() else {
+        return 0;
+    };
+    let gpus = [vulkan(), &gpu];
+    let [_, cascades, _, _, lamp, ..] = Kind::ALL;
+    let pictures = [
+        (cascades, DebugPicture::Layer(1)),
+        (lamp, DebugPicture::Cross),
+    ];
+    for (kind, what) in pictures {
+        let drawn = gpus.map(|gpu| {
+            let light = kind.lit(gpu, &stage(gpu), Filter::default(), Bias::Auto);
+            debug_picture(gpu, &*light, what)
+        });
+        assert_same(&drawn, &format!("{what:?} of {kind:?}"));
+    }
+    let tints = gpus.map(|gpu| {
+        let light = cascades.lit(gpu, &stage(gpu), Filter::default(), Bias::Auto);
+        tinted(gpu, &*light)
+    });
+    assert_same(&tints, "the tint of cascades");
+    3
+}
+
+fn debug_picture(gpu: &Gpu, light: &dyn Light, what: DebugPicture) -> RgbaImage {
+    let view = DebugView::new(&gpu.device, COLOR).expect("a renderable format");
+    let target = color_target(gpu, SIZE);
+    let mut encoder = gpu.encoder();
+    {
+        let mut pass = color_pass(&mut encoder, &target);
+        view.draw(&gpu.device, &mut pass, light.source(), what)
+            .expect("a layer of the map");
+    }
+    gpu.submit(encoder);
+    readback::rgba8(gpu, &target)
+}
+
+/// The tint of a white picture of a wall at some distance, across the borders of cascades.
+fn tinted(gpu: &Gpu, light: &dyn Light) -> RgbaImage {
+    let device = &gpu.device;
+    let view = DebugView::new(device, COLOR).expect("a format for pictures");
+    let depth = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("depth"),
+        size: wgpu::Extent3d {
+            width: SIZE,
+            height: SIZE,
+            depth_or_array_layers: 1,
+        },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Depth32Float,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    let depth = depth.create_view(&Default::default());
+    let target = color_target(gpu, SIZE);
+    let target_view = target.create_view(&Default::default());
+    // The camera's depth is 0.1 / distance.
+    let clip_from_render = camera().clip_from_view() * camera().view_from_render();
+    let mut encoder = gpu.encoder();
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: &depth,
+            depth_ops: Some(wgpu::Operations {
+                load: wgpu::LoadOp::Clear(0.1 / 5.5),
+                store: wgpu::StoreOp::Store,
+            }),
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    });
+    {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &target_view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::WHITE),
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            ..Default::default()
+        });
+        let render_from_clip = clip_from_render.inverse().as_mat4();
+        view.draw_cascades(device, &mut pass, light.source(), &depth, render_from_clip)
+            .expect("a depth texture");
+    }
+    gpu.submit(encoder);
+    readback::rgba8(gpu, &target)
+}
+
+/// The same pixels, give or take a step of 8 bits, and more than one grey or colour.
+fn assert_same([wanted, seen]: &[RgbaImage; 2], name: &str) {
+    let pixels = || wanted.pixels().zip(seen.pixels());
+    let differ = pixels()
+        .filter(|(wanted, seen)| {
+            let mut channels = wanted.0.iter().zip(seen.0);
+            channels.any(|(wanted, seen)| wanted.abs_diff(seen) > 1)
+        })
+        .count();
+    assert_eq!(differ, 0, "{name}: of {} pixels", pixels().count());
+    let first = wanted.get_pixel(0, 0);
+    assert!(
+        wanted.pixels().any(|pixel| pixel != first),
+        "{name}: {first:?} all over"
+    );
+}
