@@ -1,11 +1,11 @@
-//! What the depth passes and pipelines of casters need of a device's limits.
+//! Lists what the depth passes and pipelines of casters need of a device's limits.
 
 use crate::CasterError;
 use crate::cast::pipeline_descriptor::{CasterPipelineDescriptor, CasterVertex, ModelTransform};
 use crate::cast::view_uniform::VIEW_UNIFORM_BYTES;
 use crate::gpu::Need;
 
-/// The bind group of a depth pass: one uniform buffer, chosen by a dynamic offset.
+/// Returns the needs of a depth pass's bind group: one uniform buffer, chosen by a dynamic offset.
 pub(crate) fn caster_group(limits: &wgpu::Limits) -> [Need; 4] {
     [
         Need::new("max_bind_groups", 1u32, limits.max_bind_groups),
@@ -27,11 +27,11 @@ pub(crate) fn caster_group(limits: &wgpu::Limits) -> [Need; 4] {
     ]
 }
 
-/// What the vertex stage of a caster takes.
+/// Counts the resources that the vertex stage of a caster takes.
 #[derive(Clone, Copy, Debug)]
 struct VertexNeeds {
     buffers: u64,
-    /// Attributes, or one more than the highest location.
+    /// Is the number of attributes, or one more than the highest location if that is larger.
     attributes: u64,
     longest_stride: u64,
     bind_groups: u64,
@@ -73,7 +73,8 @@ fn vertex_needs(vertex: &CasterVertex<'_>) -> VertexNeeds {
     }
 }
 
-/// Can `device` make the pipelines of a caster? wgpu panics over more bind groups or vertex buffers than it has room for. What an engine's own bind groups hold is between it and the device.
+/// Checks that `device` can make the pipelines of a caster. wgpu panics over more bind groups or vertex buffers than it
+/// has room for. The contents of an engine's own bind groups are not checked here; the device checks them.
 pub(crate) fn check_caster(
     device: &wgpu::Device,
     descriptor: &CasterPipelineDescriptor<'_>,

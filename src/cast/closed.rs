@@ -1,4 +1,4 @@
-//! Which meshes are closed solids, of which only the faces toward the light need drawing.
+//! Recognises closed solids: meshes of which only the faces toward the light need drawing.
 
 use std::collections::HashMap;
 
@@ -6,25 +6,28 @@ use glam::{DVec3, I64Vec3, Vec3};
 
 use crate::Aabb;
 
-/// Steps of a mesh's extent that tell corners apart.
+/// Is the number of grid steps over the mesh's extent; corners that round to one grid point count as one.
 const STEPS: f64 = (1 << 20) as f64;
 
-/// Is this triangle list a closed solid with its front faces (counter-clockwise) outward? Indices beyond `positions` say no.
+/// Returns whether a triangle list is a closed solid with its front faces (counter-clockwise) outward. `positions` may
+/// be in any space and unit; every three `indices` are a triangle, and an incomplete last one is ignored. Returns false
+/// if an index is not less than the length of `positions`.
 ///
-/// From outside, what is seen first of such a solid is always a front face. So a pipeline with `cull: Some(Face::Back)` draws
-/// the same map from half the triangles; anything else (a sheet, a mesh with holes, one inside out) needs both sides. Corners
-/// whose positions agree to a millionth of the mesh's extent count as one, whatever their normals: sines do not come back to
-/// the bit where they began, and no rasteriser sees so thin a crack. Takes time in proportion to the triangles: ask once, at
-/// load time.
+/// From outside, the first surface that a ray meets of such a solid is always a front face. So a pipeline that culls
+/// with `Some(Face::Back)` draws the same map from half the triangles; any other mesh (a sheet, a mesh with holes, one
+/// that is inside out) needs both sides. Positions are rounded to a grid of 2²⁰ steps over the largest side of the
+/// mesh's bounds, and corners that round to one grid point count as one, whatever their normals: sines do not come back
+/// to the bit where they began, and no rasteriser sees a crack as thin as a millionth of the extent. The function takes
+/// time in proportion to the triangles: call it once, at load time.
 ///
-/// Two things are for the engine to know. A light *inside* a solid sees back faces alone: culled, it shines out. And a
-/// surface that passes through itself in such a way that a part of it is inside out is taken for a solid, and so is one with a
-/// smaller solid that is inside out and shares a corner with it.
+/// Two cases are for the engine to know. A light *inside* a solid sees back faces alone: if they are culled, it shines
+/// out through the solid. And the function returns true for a surface that passes through itself in such a way that a
+/// part of it is inside out, as it does for a solid that shares a corner with a smaller solid that is inside out.
 pub fn is_closed_solid(positions: &[Vec3], indices: &[u32]) -> bool {
     let Some(triangles) = welded(positions, indices) else {
         return false;
     };
-    // Each edge is walked as often one way as the other, and so bounds nothing.
+    // In a closed surface each edge is walked as often one way as the other, so that no edge is a border.
     let mut balance: HashMap<(usize, usize), i64> = HashMap::new();
     let mut solids = Groups::new(positions.len());
     for &[a, b, c] in &triangles {
@@ -37,7 +40,8 @@ pub fn is_closed_solid(positions: &[Vec3], indices: &[u32]) -> bool {
     if triangles.is_empty() || balance.values().any(|balance| *balance != 0) {
         return false;
     }
-    // Six times the signed volume of each solid, from its first corner so that a distant place costs no precision.
+    // This is six times the signed volume of each solid, from its first corner so that a distant position costs no
+    // precision.
     let mut volumes: HashMap<usize, f64> = HashMap::new();
     for triangle in &triangles {
         let solid = solids.of(triangle[0]);
@@ -48,7 +52,8 @@ pub fn is_closed_solid(positions: &[Vec3], indices: &[u32]) -> bool {
     volumes.values().all(|volume| *volume > 0.0)
 }
 
-/// The triangles that have three different corners, by the first index with each corner's position.
+/// Returns the triangles that have three different corners; each corner is named by the first index with its position.
+/// Returns `None` if an index has no position.
 fn welded(positions: &[Vec3], indices: &[u32]) -> Option<Vec<[usize; 3]>> {
     let bounds = Aabb::from_points(positions.iter().copied());
     let low = bounds.min.as_dvec3();
@@ -56,9 +61,9 @@ fn welded(positions: &[Vec3], indices: &[u32]) -> Option<Vec<[usize; 3]>> {
     let mut firsts: HashMap<I64Vec3, usize> = HashMap::new();
     let mut first = |index: u32| {
         let index = index as usize;
-        let place = (positions.get(index)?.as_dvec3() - low) * (STEPS / extent);
-        // Casts saturate, and of what is no number make 0; its volume then is none either.
-        Some(*firsts.entry(place.round().as_i64vec3()).or_insert(index))
+        let position = (positions.get(index)?.as_dvec3() - low) * (STEPS / extent);
+        // Casts saturate and turn NaN into 0; the volume of such a mesh is NaN as well, and not above 0.
+        Some(*firsts.entry(position.round().as_i64vec3()).or_insert(index))
     };
     let mut triangles = Vec::with_capacity(indices.len() / 3);
     for corners in indices.chunks_exact(3) {
@@ -70,7 +75,7 @@ fn welded(positions: &[Vec3], indices: &[u32]) -> Option<Vec<[usize; 3]>> {
     Some(triangles)
 }
 
-/// Which corners hang together: disjoint sets with halved paths (Tarjan and van Leeuwen 1984).
+/// Finds which corners are connected: disjoint sets with halved paths (Tarjan and van Leeuwen 1984).
 struct Groups {
     parents: Vec<usize>,
 }

@@ -1,4 +1,4 @@
-//! Six faces of a cube in one pass, on devices that draw several views at once.
+//! Draws the six faces of a cube in one multiview pass, on devices that support it.
 
 use bytemuck::Zeroable;
 
@@ -6,14 +6,14 @@ use crate::ShadowError;
 use crate::cast::cube_rule::one_pass_casters;
 use crate::cast::draw_casters::{DrawnCaster, PassDefaults, draw_casters};
 use crate::cast::layer_cache::ViewDraws;
-use crate::cast::view_uniform::{CasterViewUniform, VIEW_UNIFORM_BYTES, six_views_layout};
+use crate::cast::view_uniform::{CasterViewUniform, VIEW_UNIFORM_BYTES, multiview_layout};
 use crate::cast::{CasterPipeline, FrameCasters};
 use crate::gpu::{
-    DepthMap, FACE_COUNT, PendingUpload, SIX_VIEWS, UploadBuffer, capture_device_errors,
-    draws_six_views,
+    ALL_FACES_MASK, DepthMap, FACE_COUNT, PendingUpload, UploadBuffer, capture_device_errors,
+    supports_cube_multiview,
 };
 
-/// Uniforms of six views for one pass.
+/// Holds the uniforms of the six faces of one pass.
 #[derive(Debug)]
 pub(crate) struct CubePass {
     label: String,
@@ -21,24 +21,24 @@ pub(crate) struct CubePass {
     bind_group: wgpu::BindGroup,
 }
 
-/// One pass that is the cheaper way, with everything made that could fail.
+/// Is one pass that is the cheaper way to draw, with everything made that could fail.
 pub(crate) struct PreparedCubePass<'a> {
     upload: Option<PendingUpload>,
-    /// All casters of all faces.
+    /// Lists the casters of all faces.
     casters: Vec<DrawnCaster<'a>>,
 }
 
 impl PreparedCubePass<'_> {
-    /// Was anything made on the device?
+    /// Returns whether anything was made on the device.
     pub fn uploads(&self) -> bool {
         self.upload.is_some()
     }
 }
 
 impl CubePass {
-    /// None where the device does not draw six views at once, or not rightly.
+    /// Returns `None` where the device does not draw six faces at once, or not correctly.
     pub fn new(device: &wgpu::Device, label: &str) -> Result<Option<Self>, ShadowError> {
-        if !draws_six_views(device) {
+        if !supports_cube_multiview(device) {
             return Ok(None);
         }
         let label = format!("{label} six faces");
@@ -47,7 +47,7 @@ impl CubePass {
         let create = || {
             device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some(&label),
-                layout: &six_views_layout(device),
+                layout: &multiview_layout(device),
                 entries: &[wgpu::BindGroupEntry {
                     binding: 0,
                     resource: faces.buffer().as_entire_binding(),
@@ -66,8 +66,8 @@ impl CubePass {
         }))
     }
 
-    /// Stages one pass for `views`, all of which are to be drawn whole; none where a pass each is cheaper, or a caster cannot be
-    /// drawn into six views at once.
+    /// Stages one pass for `views`, all of which are to be drawn whole. Returns `None` where a pass for each is
+    /// cheaper, or where a caster cannot be drawn into six faces at once.
     pub fn prepare<'a>(
         &self,
         device: &wgpu::Device,
@@ -79,16 +79,16 @@ impl CubePass {
         };
         let drawn = union.into_iter().map(|index| {
             let pipeline = casters.caster(index).pipeline();
-            let is_ready = pipeline.device() == device && pipeline.six_views().is_some();
+            let is_ready = pipeline.device() == device && pipeline.multiview_pipeline().is_some();
             is_ready.then_some(DrawnCaster { index, pipeline })
         });
         let Some(drawn) = drawn.collect() else {
             return Ok(None);
         };
-        // A face without a view keeps nothing: its depth is beyond the clip volume.
-        let mut nowhere = CasterViewUniform::zeroed();
-        nowhere.clip_from_anchor[3] = [0.0, 0.0, -1.0, 1.0];
-        let mut uniforms = [nowhere; FACE_COUNT as usize];
+        // A face without a view stays empty: this matrix places every vertex at a depth beyond the clip volume.
+        let mut clipped_away = CasterViewUniform::zeroed();
+        clipped_away.clip_from_anchor[3] = [0.0, 0.0, -1.0, 1.0];
+        let mut uniforms = [clipped_away; FACE_COUNT as usize];
         for draws in views {
             uniforms[draws.view.layer() as usize] = CasterViewUniform::of(&draws.view);
         }
@@ -100,7 +100,8 @@ impl CubePass {
         }))
     }
 
-    /// Draws into the six layers of `map` at once. Each view's list becomes what was drawn into it.
+    /// Draws into the six layers of `map` at once. Each view's list of casters becomes the list of what was drawn into
+    /// it.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -116,7 +117,7 @@ impl CubePass {
             depth_stencil_attachment: Some(super::depth_attachment(map.array_view(), super::CLEAR)),
             timestamp_writes: None,
             occlusion_query_set: None,
-            multiview_mask: SIX_VIEWS,
+            multiview_mask: ALL_FACES_MASK,
         });
         let defaults = PassDefaults {
             view_group: &self.bind_group,
@@ -130,7 +131,7 @@ impl CubePass {
             &views[0].view,
             drawn,
             casters,
-            CasterPipeline::six_views,
+            CasterPipeline::multiview_pipeline,
         );
         for draws in views {
             draws.casters.clear();

@@ -1,4 +1,4 @@
-//! Pipelines that draw the six faces of a cube in one pass.
+//! Makes the pipelines that draw the six faces of a cube in one multiview pass.
 
 use std::sync::OnceLock;
 
@@ -9,10 +9,10 @@ use crate::cast::pipeline_descriptor::{
 };
 use crate::gpu::{DepthFormat, capture_device_errors};
 
-/// Format of the maps of point lights.
+/// Is the format of the maps of point lights.
 const CUBE_FORMAT: DepthFormat = DepthFormat::Float32;
 
-/// How to make them, and what was made when they were first wanted.
+/// Holds what the pipelines are made from, and the pipelines once they have been needed for the first time.
 #[derive(Debug)]
 pub(crate) struct CubePipelines {
     position: PositionAttribute,
@@ -21,12 +21,12 @@ pub(crate) struct CubePipelines {
     front_face: wgpu::FrontFace,
     topology: wgpu::PrimitiveTopology,
     strip_index_format: Option<wgpu::IndexFormat>,
-    /// None where the device refuses.
+    /// Holds `None` where the device refused to make them.
     made: OnceLock<Option<BothWindings>>,
 }
 
 impl CubePipelines {
-    /// None for the engine's own WGSL, whose vertex entry does not know of a view index.
+    /// Returns `None` for the engine's own WGSL, whose vertex entry does not take a view index.
     pub fn of(descriptor: &CasterPipelineDescriptor<'_>) -> Option<Self> {
         let CasterVertex::BuiltIn { position, model } = descriptor.vertex else {
             return None;
@@ -42,8 +42,9 @@ impl CubePipelines {
         })
     }
 
-    /// The pipeline for transforms that mirror, or for the others. `device` is the one that the caster's other pipelines were
-    /// made on, and has `Features::MULTIVIEW`.
+    /// Returns the pipeline for transforms that mirror, or the one for all others. `device` is the one that the
+    /// caster's other pipelines were made on, and has `Features::MULTIVIEW`. Returns `None` where the device refuses to
+    /// make them.
     pub fn get(&self, device: &wgpu::Device, mirrored: bool) -> Option<&wgpu::RenderPipeline> {
         let make = || {
             capture_device_errors(device, || self.make(device))
@@ -68,7 +69,7 @@ impl CubePipelines {
             depth_formats: &[CUBE_FORMAT],
         };
         let mut by_format =
-            pipeline_build::six_views(device, &descriptor, &self.position, &self.model);
+            pipeline_build::multiview_pipelines(device, &descriptor, &self.position, &self.model);
         by_format[CUBE_FORMAT.index()].take()
     }
 }

@@ -1,12 +1,13 @@
-//! Six faces of a cube: in one pass, or in a pass each?
+//! Decides whether the six faces of a cube are drawn in one pass or in a pass for each.
 //!
-//! One pass draws every caster once and into all six faces. A pass each draws a caster once per face that it touches. So one
-//! pass saves passes and draw calls, and puts every triangle through six faces.
+//! One pass draws every caster once and into all six faces. A pass for each face draws a caster once per face that it
+//! touches. So one pass saves passes and draw calls, and puts every triangle through six faces.
 //!
-//! Measured on lavapipe of Mesa 25.0.7 (`cargo bench --bench cost`, "one pass for all faces"): with 50 to 200 casters both ways
-//! cost the same where one pass puts through 100 to 250 triangles for each draw call that it saves; with a dozen or fewer, where
-//! passes weigh most, at 4000 to 20000 for each pass that it saves. The rule takes the lower ends. On a GPU triangles cost less
-//! beside calls, so there one pass is taken more rarely than it could be.
+//! The constants were measured on lavapipe of Mesa 25.0.7 (`cargo bench --bench cost`, "one pass for all faces"). With
+//! 50 to 200 casters both ways cost the same where one pass puts through 100 to 250 triangles for each draw call that
+//! it saves; with a dozen casters or fewer, where passes weigh most, they cost the same at 4000 to 20000 triangles for
+//! each pass that it saves. The rule takes the lower ends. On a GPU triangles cost less beside calls, so there one pass
+//! is taken more rarely than it could be.
 
 use glam::Vec4;
 
@@ -15,18 +16,18 @@ use crate::fit::ViewPlacement;
 use crate::gpu::FACE_COUNT;
 use crate::{Aabb, ShadowView};
 
-/// Most triangles through all faces that are worth one draw call saved.
+/// Is the largest number of triangles, counted over all faces, that is worth one saved draw call.
 const TRIANGLES_PER_DRAW: u64 = 96;
-/// Most triangles through all faces that are worth one pass saved.
+/// Is the largest number of triangles, counted over all faces, that is worth one saved pass.
 const TRIANGLES_PER_PASS: u64 = 4000;
 
-/// The casters that one pass would draw, in order, where it gives the depths of a pass each and costs less; `views` are the
-/// faces that something casts into, all of which are to be drawn whole.
+/// Returns the casters that one pass would draw, in order, where it gives the same depths as a pass for each face and
+/// costs less. `views` are the faces that something casts into, all of which are to be drawn whole.
 pub(crate) fn one_pass_casters(
     views: &[ViewDraws],
     casters: &FrameCasters<'_>,
 ) -> Option<Vec<u32>> {
-    // By caster, one bit for each view that draws it.
+    // Each caster has one bit for each view that draws it.
     let mut drawn_by = vec![0u8; casters.len()];
     for (view, draws) in views.iter().enumerate() {
         for &caster in &draws.casters {
@@ -58,8 +59,9 @@ pub(crate) fn one_pass_casters(
     (triangles < worth).then_some(union)
 }
 
-/// Casters are culled by the part of them that the light reaches. What lies beyond can be seen by a view that leaves the caster
-/// out, so that one pass would draw there what a pass each does not.
+/// Returns whether a part of a caster beyond the light's reach may be visible in a view. Casters are culled by the part
+/// of them that the light reaches. The part beyond can be seen by a view that leaves the caster out, so that one pass
+/// would draw it there while a pass for each face would not.
 fn may_show_beyond_reach(bounds: &Aabb, view: &ShadowView) -> bool {
     let ViewPlacement::Perspective { reach, .. } = view.placement() else {
         return true;
@@ -72,7 +74,7 @@ fn may_show_beyond_reach(bounds: &Aabb, view: &ShadowView) -> bool {
     let clip_from_anchor = view.clip_from_anchor();
     let corners = [0, 1, 2, 3, 4, 5, 6, 7]
         .map(|corner| clip_from_anchor * (bounds.corner(corner) - light).extend(1.0));
-    // A convex body is outside where all its corners are on the far side of one plane.
+    // A convex body is outside if all its corners are on the far side of one plane.
     let outside = |beyond: fn(&Vec4) -> bool| corners.iter().all(beyond);
     !(outside(|clip| clip.x > clip.w)
         || outside(|clip| clip.x < -clip.w)

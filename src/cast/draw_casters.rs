@@ -1,22 +1,22 @@
-//! The loop that draws casters, in every kind of depth pass.
+//! Contains the loop that draws casters in every kind of depth pass.
 
 use crate::ShadowView;
 use crate::cast::{CasterPipeline, FrameCasters};
 
-/// A caster that a pass draws.
+/// Is a caster that a pass draws.
 #[derive(Clone, Copy)]
 pub(crate) struct DrawnCaster<'a> {
-    /// Its index in the engine's list.
+    /// Is its index in the engine's list.
     pub index: u32,
     pub pipeline: &'a CasterPipeline,
 }
 
-/// The state of a pass that casters rely on and may change.
+/// Holds the state of a pass that casters rely on and may change.
 pub(crate) struct PassDefaults<'a> {
-    /// Bind group 0: the view or views being rendered.
+    /// Is bind group 0: the view or views being rendered.
     pub view_group: &'a wgpu::BindGroup,
     pub offsets: &'a [u32],
-    /// Texels per side of the viewport.
+    /// Is the number of texels per side of the viewport.
     pub map_size: u32,
 }
 
@@ -34,10 +34,11 @@ impl PassDefaults<'_> {
     }
 }
 
-/// Draws casters one after the other. Each finds its pipeline, bind group 0, the whole map as viewport and scissor rectangle,
-/// and depths from 0 to 1, whatever the one before it has set. They are set again only after a caster that may have changed
-/// them: in software, setting bind group and scissor rectangle costs several times what a small draw costs. `variant` is what
-/// of a caster's pipelines goes with the pass; without one the caster is left out.
+/// Draws casters one after the other. Each caster finds its pipeline, bind group 0, the whole map as viewport and
+/// scissor rectangle, and depths from 0 to 1, whatever the caster before it has set. They are set again only after a
+/// caster that may have changed them: in software, setting bind group and scissor rectangle costs several times what a
+/// small draw costs. `variant` returns the one of a caster's pipelines that matches the pass; a caster for which it
+/// returns `None` is left out.
 pub(crate) fn draw_casters<'c>(
     pass: &mut wgpu::RenderPass<'_>,
     defaults: &PassDefaults<'_>,

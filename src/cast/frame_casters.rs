@@ -1,9 +1,9 @@
-//! The casters of a frame, with what each has said of itself.
+//! Holds the casters of a frame with the values that their methods returned.
 
 use crate::cast::{Revision, ShadowCaster};
 use crate::{Aabb, ShadowError, check};
 
-/// What a caster has said of itself in a frame, apart from its bounds.
+/// Holds what the methods of a caster returned in a frame, apart from its bounds.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CasterFacts {
     pub revision: Revision,
@@ -12,16 +12,16 @@ pub(crate) struct CasterFacts {
     pub keeps_pass_state: bool,
 }
 
-/// The casters of a frame. Each of their methods but `pipeline` and `draw` is called once a frame, and the answers serve all
-/// views, so that a caster that changes its mind in between cannot contradict itself.
+/// Holds the casters of a frame. Each of their methods but `pipeline` and `draw` is called once a frame, and all views
+/// use the values returned, so that a caster whose values change in between cannot contradict itself.
 #[derive(Clone, Copy)]
 pub(crate) struct FrameCasters<'a> {
     pub casters: &'a [&'a dyn ShadowCaster],
-    /// One entry per caster; empty for one that does not cast.
+    /// Has one entry per caster, empty for one that does not cast.
     pub bounds: &'a [Aabb],
-    /// One entry per caster.
+    /// Has one entry per caster.
     pub facts: &'a [CasterFacts],
-    /// Path of the list in the caller's frame, for errors.
+    /// Is the path of the list in the caller's frame, for errors.
     pub field: &'static str,
 }
 
@@ -31,7 +31,7 @@ impl<'a> FrameCasters<'a> {
         self.casters[index as usize]
     }
 
-    /// Returns what the caster at `index` has said of itself.
+    /// Returns what the methods of the caster at `index` returned.
     pub fn facts(&self, index: u32) -> &'a CasterFacts {
         &self.facts[index as usize]
     }
@@ -41,7 +41,7 @@ impl<'a> FrameCasters<'a> {
     }
 }
 
-/// The answers of a frame's casters, in lists that keep their memory from frame to frame.
+/// Holds the values that a frame's casters returned, in lists that are reused from frame to frame.
 #[derive(Debug, Default)]
 pub(crate) struct CasterAnswers {
     bounds: Vec<Aabb>,
@@ -49,8 +49,8 @@ pub(crate) struct CasterAnswers {
 }
 
 impl CasterAnswers {
-    /// Asks all casters, and adds the bounds of those that receive to `receivers`. `field` is the path of the list in the
-    /// caller's frame.
+    /// Queries all casters, and adds the bounds of those that receive to `receivers`. `field` is the path of the list
+    /// in the caller's frame.
     pub fn ask<'a>(
         &'a mut self,
         field: &'static str,

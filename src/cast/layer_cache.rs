@@ -1,19 +1,20 @@
-//! What a layer of a map holds, what part of it stands still, and so what a frame must draw.
+//! Tracks what each layer of a map caches, which of its casters are static, and so what a frame must draw.
 
 use crate::ShadowView;
 use crate::cast::{FrameCasters, Revision};
 use crate::fit::ViewPlacement;
 
-/// One view of this frame and the casters that it needs, by index into the engine's list, ascending.
+/// Is one view of this frame with the casters that it needs, by ascending index into the engine's list.
 #[derive(Debug)]
 pub(crate) struct ViewDraws {
     pub view: ShadowView,
     pub casters: Vec<u32>,
-    /// The layer keeps what it holds, whatever has changed.
+    /// States that the refresh of the view is deferred: the layer keeps its present depths, whatever has changed.
     pub deferred: bool,
-    /// Set by the recorder.
+    /// States how the layer is brought up to date; the recorder sets it.
     pub plan: Plan,
-    /// Casters of the view that came with the still part instead of being drawn, and their triangles.
+    /// Counts the casters of the view that were copied from the static-caster cache instead of being drawn; the next
+    /// field counts their triangles.
     pub copied: u32,
     pub copied_triangles: u64,
 }
@@ -31,21 +32,22 @@ impl ViewDraws {
     }
 }
 
-/// How a layer comes to hold a view.
+/// States how a layer comes to hold a view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Plan {
-    /// It does already.
+    /// Leaves the layer as it is: it holds the view already.
     Keep,
-    /// All casters are drawn into it.
+    /// Draws all casters into it.
     All,
-    /// The still part is copied into it, and the casters that are not of it drawn over.
+    /// Copies the static-caster cache into it, and draws the other casters over that.
     OverStaticCache,
-    /// The still part is drawn anew into a texture of its own first.
+    /// Draws the static casters into the static-caster cache first, a texture of its own, and then does as
+    /// `OverStaticCache`.
     RenewStaticCache,
 }
 
 impl Plan {
-    /// Returns how many depth passes it takes.
+    /// Returns how many depth passes the plan takes.
     pub const fn passes(self) -> u32 {
         match self {
             Self::Keep => 0,
@@ -55,66 +57,69 @@ impl Plan {
     }
 }
 
-/// A caster as it was drawn.
+/// Is a caster as it was drawn.
 #[derive(Clone, Copy, Debug)]
 struct Drawn {
     index: u32,
     revision: Revision,
-    /// Draws for which it had not changed.
+    /// Counts the draws for which it had not changed.
     age: u32,
 }
 
-/// Casters count as still, and so does a view, after so many draws without change: what is animated at a quarter of the frame
-/// rate or faster never does.
+/// Is the number of draws without a change after which a caster, or a view, counts as static. A caster that is animated
+/// at a quarter of the frame rate or faster never does.
 const STATIC_AFTER_DRAWS: u32 = 4;
 
-/// A still part pays where drawing it again would cost more than copying a layer. So many texels of copying come to a draw, and
-/// so many to a triangle. In software a draw of a box costs as much as copying 100 000 (`cargo bench --bench cost`, "still
-/// part"); a third of that leaves room for devices that draw faster beside their memory.
+/// Is the number of copied texels that cost as much as one draw. A static-caster cache pays where drawing its casters
+/// again would cost more than copying a layer. In software a draw of a box costs as much as copying 100 000 texels
+/// (`cargo bench --bench cost`, the table in which one of many casters moves); a third of that leaves room for devices
+/// that draw faster in relation to their memory.
 const TEXELS_PER_DRAW: u64 = 32_768;
 
-/// By the memory that a texel of copying moves (8 bytes) against the corners, fetched and transformed, that a triangle needs
-/// (some 100 bytes where corners are shared); a software rasteriser takes far longer over triangles.
+/// Is the number of copied texels that cost as much as one triangle. It compares the memory that a copied texel moves
+/// (8 bytes) with the corners that a triangle fetches and transforms (some 100 bytes where corners are shared); a
+/// software rasteriser takes far longer over triangles.
 const TEXELS_PER_TRIANGLE: u64 = 16;
 
-/// Longest time, in draws, for which no part is made after one that did not last: so long, one part in vain costs less than one
-/// draw in a hundred.
-const LONGEST_REST: u32 = 256;
+/// Is the longest time, in draws, for which no static-caster cache is made after one that did not last. With a pause
+/// this long, a cache made for nothing costs less than one draw in a hundred.
+const LONGEST_COOLDOWN_DRAWS: u32 = 256;
 
-/// What a layer of the map holds.
+/// Holds what a layer of the map caches: the view, the casters as they were drawn, and its static casters.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LayerCache {
-    /// None before the first pass.
+    /// Holds `None` before the first pass.
     placement: Option<ViewPlacement>,
-    /// Largest render coordinate that the depths were computed from: they carry its rounding, whatever the origin is by now.
+    /// Is the largest render coordinate, in world units, that the depths were computed from. They carry its rounding,
+    /// whatever the origin is by now.
     render_reach: f64,
-    /// Draws since the view last changed.
+    /// Counts the draws since the view last changed.
     age: u32,
     drawn: Vec<Drawn>,
-    part: StaticCasterCache,
+    static_cache: StaticCasterCache,
 }
 
-/// What the texture of a layer's still part holds.
+/// Describes the texture that holds a layer's static casters alone.
 #[derive(Clone, Debug, Default)]
 struct StaticCasterCache {
-    /// Nothing while it is of no use.
+    /// Is empty while there is no usable cache.
     casters: Vec<Drawn>,
-    /// Largest render coordinate that its depths were computed from.
+    /// Is the largest render coordinate, in world units, that its depths were computed from.
     render_reach: f64,
-    /// Draws that it has served.
+    /// Counts the draws that used it.
     served: u32,
-    /// Draws until one may be made again, and for how long the last pause was.
-    resting: u32,
-    last_rest: u32,
+    /// Is the number of draws until a cache may be made again; the next field is the length of the last such pause.
+    cooldown: u32,
+    last_cooldown: u32,
 }
 
 impl LayerCache {
-    /// Is it of `view`, whatever the casters?
+    /// Returns whether the layer holds `view`, whatever the casters.
     pub fn is_of(&self, view: &ShadowView) -> bool {
         self.placement == Some(*view.placement())
     }
 
-    /// Returns whether it is as good as what `draws` would put there.
+    /// Returns whether the layer holds what `draws` would put there.
     fn holds(&self, draws: &ViewDraws, casters: &FrameCasters<'_>) -> bool {
         self.is_of(&draws.view)
             && draws.view.may_keep_depths_from(self.render_reach)
@@ -124,7 +129,7 @@ impl LayerCache {
                 .all(|(now, was)| now.revision == was.revision && now.revision.is_stable())
     }
 
-    /// What `draws` needs. `can_copy` is false where layers cannot be copied.
+    /// Returns what `draws` needs. `can_copy` is false where layers cannot be copied.
     pub fn plan(&self, draws: &ViewDraws, casters: &FrameCasters<'_>, can_copy: bool) -> Plan {
         if draws.deferred || self.holds(draws, casters) {
             return Plan::Keep;
@@ -133,64 +138,67 @@ impl LayerCache {
             return Plan::All;
         }
         let texels = u64::from(draws.view.map_size()).pow(2);
-        let still = worth(self.still(draws, casters), casters);
-        if self.part.lasts(draws, casters) {
-            let part = worth(self.part.casters.iter().copied(), casters);
-            return if still > part + texels {
+        let static_cost = draw_cost_texels(self.static_casters(draws, casters), casters);
+        if self.static_cache.is_valid_for(draws, casters) {
+            let cached_cost = draw_cost_texels(self.static_cache.casters.iter().copied(), casters);
+            return if static_cost > cached_cost + texels {
                 Plan::RenewStaticCache
             } else {
                 Plan::OverStaticCache
             };
         }
-        if self.age >= STATIC_AFTER_DRAWS && self.part.resting == 0 && still > texels {
+        if self.age >= STATIC_AFTER_DRAWS && self.static_cache.cooldown == 0 && static_cost > texels
+        {
             Plan::RenewStaticCache
         } else {
             Plan::All
         }
     }
 
-    /// Returns the largest render coordinate that the layer's depths will have been computed from once `draws` has been carried
-    /// out as planned.
+    /// Returns the largest render coordinate that the layer's depths will have been computed from once `draws` has been
+    /// carried out as planned.
     pub fn render_reach_after(&self, draws: &ViewDraws) -> f64 {
         let now = draws.view.render_reach();
         match draws.plan {
             Plan::Keep => self.render_reach,
-            Plan::OverStaticCache => self.part.render_reach.max(now),
+            Plan::OverStaticCache => self.static_cache.render_reach.max(now),
             Plan::All | Plan::RenewStaticCache => now,
         }
     }
 
-    /// Does the still part hold the caster?
-    pub fn is_still(&self, index: u32) -> bool {
-        let casters = &self.part.casters;
+    /// Returns whether the static-caster cache holds the caster at `index`.
+    pub fn is_static(&self, index: u32) -> bool {
+        let casters = &self.static_cache.casters;
         casters.binary_search_by_key(&index, |c| c.index).is_ok()
     }
 
-    /// Takes on what `draws` puts there.
+    /// Updates the cache's state to what `draws` puts into the layer.
     pub fn replace(&mut self, draws: &ViewDraws, casters: &FrameCasters<'_>) {
         self.render_reach = self.render_reach_after(draws);
         let placement = Some(*draws.view.placement());
         if self.placement != placement {
             self.placement = placement;
             self.age = 0;
-            self.part.casters.clear();
+            self.static_cache.casters.clear();
         }
         self.age = self.age.saturating_add(1);
-        self.part.resting = self.part.resting.saturating_sub(1);
+        self.static_cache.cooldown = self.static_cache.cooldown.saturating_sub(1);
         match draws.plan {
             Plan::Keep => return,
-            Plan::All => self.part.give_up(),
-            Plan::OverStaticCache => self.part.served = self.part.served.saturating_add(1),
+            Plan::All => self.static_cache.discard(),
+            Plan::OverStaticCache => {
+                self.static_cache.served = self.static_cache.served.saturating_add(1)
+            }
             Plan::RenewStaticCache => {
-                let mut part = std::mem::take(&mut self.part.casters);
-                part.clear();
-                part.extend(self.still(draws, casters));
-                self.part.casters = part;
-                self.part.render_reach = self.render_reach;
-                self.part.served = 0;
+                let mut kept = std::mem::take(&mut self.static_cache.casters);
+                kept.clear();
+                kept.extend(self.static_casters(draws, casters));
+                self.static_cache.casters = kept;
+                self.static_cache.render_reach = self.render_reach;
+                self.static_cache.served = 0;
             }
         }
-        // The old list stands in front of the new one while ages go over.
+        // The old list precedes the new one in one vector while ages are carried over.
         let before = self.drawn.len();
         self.drawn.extend(now(draws, casters));
         let (old, new) = self.drawn.split_at_mut(before);
@@ -204,8 +212,8 @@ impl LayerCache {
         self.drawn.drain(..before);
     }
 
-    /// Casters of `draws` that have not changed for long enough.
-    fn still<'a>(
+    /// Returns the casters of `draws` that have not changed for [`STATIC_AFTER_DRAWS`] draws.
+    fn static_casters<'a>(
         &'a self,
         draws: &'a ViewDraws,
         casters: &'a FrameCasters<'_>,
@@ -215,25 +223,27 @@ impl LayerCache {
 }
 
 impl StaticCasterCache {
-    /// Is there one, of which `draws` has every caster as it was?
-    fn lasts(&self, draws: &ViewDraws, casters: &FrameCasters<'_>) -> bool {
+    /// Returns whether there is a cache and `draws` contains every one of its casters unchanged.
+    fn is_valid_for(&self, draws: &ViewDraws, casters: &FrameCasters<'_>) -> bool {
         !self.casters.is_empty()
             && draws.view.may_keep_depths_from(self.render_reach)
             && unchanged(&self.casters, draws, casters).count() == self.casters.len()
     }
 
-    /// The longer it takes until the next one, the less this one has served.
-    fn give_up(&mut self) {
+    /// Drops the cached casters. The fewer draws the cache has served, the longer no new one is made: the pause
+    /// doubles, from 1 draw up to [`LONGEST_COOLDOWN_DRAWS`], unless the cache served at least four times as many
+    /// draws as the last pause was long, which sets the pause to 0.
+    fn discard(&mut self) {
         if self.casters.is_empty() {
             return;
         }
         self.casters.clear();
-        self.last_rest = if self.served < 4 * self.last_rest.max(1) {
-            (2 * self.last_rest).clamp(1, LONGEST_REST)
+        self.last_cooldown = if self.served < 4 * self.last_cooldown.max(1) {
+            (2 * self.last_cooldown).clamp(1, LONGEST_COOLDOWN_DRAWS)
         } else {
             0
         };
-        self.resting = self.last_rest;
+        self.cooldown = self.last_cooldown;
     }
 }
 
@@ -243,7 +253,7 @@ impl Drawn {
     }
 }
 
-/// The casters of `draws` as they are.
+/// Returns the casters of `draws` in their present revisions.
 fn now<'a>(
     draws: &'a ViewDraws,
     casters: &'a FrameCasters<'_>,
@@ -255,7 +265,7 @@ fn now<'a>(
     })
 }
 
-/// Those of `before` (ascending by index) that `draws` has with the same revision.
+/// Returns those of `before` (ascending by index) that `draws` contains with the same revision.
 fn unchanged<'a>(
     before: &'a [Drawn],
     draws: &'a ViewDraws,
@@ -268,8 +278,8 @@ fn unchanged<'a>(
     })
 }
 
-/// Texels of copying that drawing the casters would cost.
-fn worth(drawn: impl Iterator<Item = Drawn>, casters: &FrameCasters<'_>) -> u64 {
+/// Returns what drawing the casters costs, in copied texels.
+fn draw_cost_texels(drawn: impl Iterator<Item = Drawn>, casters: &FrameCasters<'_>) -> u64 {
     drawn
         .map(|drawn| {
             let triangles = casters.facts(drawn.index).triangles;

@@ -1,4 +1,4 @@
-//! A ready-made caster: a vertex buffer, perhaps an index buffer, and a matrix.
+//! Provides a ready-made caster: a vertex buffer, an optional index buffer, and a matrix.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -11,7 +11,11 @@ use crate::error::CasterError;
 use crate::gpu::filled_buffer;
 use crate::{Aabb, ShadowView};
 
-/// A mesh with one transform. Its revision changes when the transform does, so that still meshes keep their maps.
+/// Casts the shadow of a mesh with one transform.
+///
+/// Its [`Revision`] changes when [`set_transform`](Self::set_transform) changes the transform and when
+/// [`geometry_changed`](Self::geometry_changed) is called, so that meshes that do not move keep their maps. Buffers
+/// whose contents change without such a call leave a stale shadow behind.
 #[derive(Debug)]
 pub struct MeshCaster {
     pipeline: CasterPipeline,
@@ -29,12 +33,13 @@ pub struct MeshCaster {
 static NEXT_ID: AtomicU64 = AtomicU64::new(0);
 
 impl MeshCaster {
-    /// Keeps handles of the buffers; nothing is copied but the matrix.
+    /// Keeps handles of the buffers; only the matrix is copied.
     ///
     /// # Errors
-    /// [`CasterError`] for a matrix or bounds that are not finite, a pipeline that takes more than a mesh sets or is another
-    /// device's, a buffer without its usage flag or of another device, index and vertex ranges that a buffer does not hold, or
-    /// a device that is lost or out of memory.
+    /// Returns [`CasterError`] for a matrix or bounds that are not finite, a pipeline that takes more than a mesh sets
+    /// or belongs to another device, a buffer without its usage flag or of another device, index and vertex ranges that
+    /// are empty or not within their buffer, indices of a format that does not match a strip pipeline, or a device that
+    /// is lost or out of memory.
     pub fn new(
         device: &wgpu::Device,
         descriptor: &MeshCasterDescriptor<'_>,
@@ -68,15 +73,15 @@ impl MeshCaster {
         Ok(mesh)
     }
 
-    /// Moves the mesh. A transform equal to the present one changes nothing. Without an instance matrix in its pipeline the
-    /// mesh stands in render space and does not move.
+    /// Sets the transform to render space from model space. A transform equal to the present one changes nothing.
+    /// Without an instance matrix in its pipeline the mesh is in render space already, and this call has no effect.
     ///
-    /// What was recorded before shows the mesh where it was then, whenever it is submitted: the matrix goes into a new buffer,
-    /// and passes keep the one that they were recorded with.
+    /// Passes that were recorded before show the mesh where it was then, whenever they are submitted: the matrix goes
+    /// into a new buffer, and passes keep the one that they were recorded with.
     ///
     /// # Errors
-    /// [`CasterError::NotFinite`] for a matrix that is not finite or takes the bounds to infinity, [`CasterError::Device`] for
-    /// a device that is lost or out of memory; the mesh stays where it was.
+    /// Returns [`CasterError::NotFinite`] for a matrix that is not finite or takes the bounds to infinity,
+    /// [`CasterError::Device`] for a device that is lost or out of memory; the mesh stays where it was.
     pub fn set_transform(&mut self, render_from_model: Mat4) -> Result<(), CasterError> {
         check_matrix(&render_from_model)?;
         if self.transform.is_none() || render_from_model == self.render_from_model {
@@ -98,10 +103,12 @@ impl MeshCaster {
         self.render_from_model
     }
 
-    /// Says that the buffers' contents have changed, and where they lie now.
+    /// Records that the contents of the buffers have changed and sets their new bounds in model space. Without this
+    /// call, maps that show the old geometry are kept.
     ///
     /// # Errors
-    /// [`CasterError::NotFinite`] for bounds that are neither finite nor empty; the mesh keeps those that it had.
+    /// Returns [`CasterError::NotFinite`] for bounds that are neither finite nor empty; the mesh keeps those that it
+    /// had.
     pub fn geometry_changed(&mut self, bounds_model: Aabb) -> Result<(), CasterError> {
         self.bounds_render = self.bounds(&bounds_model, &self.render_from_model)?;
         self.bounds_model = bounds_model;
@@ -109,7 +116,7 @@ impl MeshCaster {
         Ok(())
     }
 
-    /// Returns where a mesh with `bounds_model` would lie under a transform.
+    /// Returns the bounds in render space that a mesh with `bounds_model` would have under a transform.
     fn bounds(&self, bounds_model: &Aabb, render_from_model: &Mat4) -> Result<Aabb, CasterError> {
         check_bounds("MeshCasterDescriptor::bounds_model", bounds_model)?;
         if self.transform.is_none() {
@@ -123,7 +130,7 @@ impl MeshCaster {
         Ok(bounds)
     }
 
-    /// Returns a vertex buffer with one instance that holds the matrix where the pipeline reads it.
+    /// Returns a vertex buffer with one instance that holds the matrix at the offset where the pipeline reads it.
     fn transform_buffer(&self, render_from_model: &Mat4) -> Result<wgpu::Buffer, CasterError> {
         filled_buffer(
             self.pipeline.device(),
@@ -192,7 +199,7 @@ fn mirrors(render_from_model: &Mat4) -> bool {
     render_from_model.determinant() < 0.0
 }
 
-/// The matrix at the place where the pipeline reads it.
+/// Returns the bytes of one instance, with the matrix at the offset where the pipeline reads it.
 fn matrix_bytes(pipeline: &CasterPipeline, matrix: &Mat4) -> Vec<u8> {
     let (array_stride, offset) = match pipeline.model_transform() {
         ModelTransform::Identity => (64, 0),

@@ -1,4 +1,4 @@
-//! What a [`MeshCaster`](crate::MeshCaster) must be made of so that every frame can draw it.
+//! Checks that what a [`MeshCaster`](crate::MeshCaster) is made of can be drawn in every frame.
 
 use std::ops::Range;
 
@@ -48,7 +48,7 @@ pub(crate) fn check_pipeline(
     }
 }
 
-/// Accepts buffers of `device` that hold what is drawn of them.
+/// Accepts buffers of `device` that hold the ranges that are drawn.
 pub(crate) fn check_buffers(
     device: &wgpu::Device,
     descriptor: &MeshCasterDescriptor<'_>,
@@ -110,8 +110,8 @@ fn check_indices(
     require(field, u64::from(indices.end) * index_bytes, buffer.size())
 }
 
-/// Accepts buffers of `device`. A buffer does not tell whose it is; wgpu does when an encoder that uses it is finished, so one
-/// is finished here that is thrown away.
+/// Accepts buffers of `device`. A buffer does not tell which device it belongs to; wgpu reports a mismatch when an
+/// encoder that uses the buffer is finished, so this finishes an encoder that is then thrown away.
 fn check_owner(
     device: &wgpu::Device,
     descriptor: &MeshCasterDescriptor<'_>,

@@ -1,4 +1,4 @@
-//! What a ready-made mesh is made of.
+//! Describes what a ready-made mesh caster is made of.
 
 use std::ops::Range;
 
@@ -7,42 +7,45 @@ use glam::Mat4;
 use crate::Aabb;
 use crate::cast::CasterPipeline;
 
-/// What of its buffers a [`MeshCaster`](crate::MeshCaster) draws.
+/// Selects the range of its buffers that a [`MeshCaster`](crate::MeshCaster) draws.
 #[derive(Clone, Debug)]
 pub enum MeshIndices {
-    /// Vertices in order.
+    /// Draws vertices in order.
     None {
-        /// Range of vertices.
+        /// Is the range of vertices; not empty, and within the vertex buffer.
         vertices: Range<u32>,
     },
-    /// Through an index buffer created with `BufferUsages::INDEX`.
+    /// Draws through an index buffer created with `BufferUsages::INDEX`.
     Buffer {
-        /// The buffer.
+        /// Is the index buffer, made on the same device as the pipeline.
         buffer: wgpu::Buffer,
-        /// Its format.
+        /// Is the format of the indices; for a strip pipeline it must be the pipeline's `strip_index_format`.
         format: wgpu::IndexFormat,
-        /// Range of indices.
+        /// Is the range of indices; not empty, and within the index buffer.
         indices: Range<u32>,
-        /// Added to every index.
+        /// Is added to every index.
         base_vertex: i32,
     },
 }
 
-/// What a [`MeshCaster`](crate::MeshCaster) is made of.
+/// Describes what a [`MeshCaster`](crate::MeshCaster) is made of. [`MeshCaster::new`](crate::MeshCaster::new) checks
+/// it.
 #[derive(Clone, Debug)]
 pub struct MeshCasterDescriptor<'a> {
-    /// Label of the transform buffer.
+    /// Is the label of the transform buffer; "shadow mesh caster" if `None`.
     pub label: wgpu::Label<'a>,
-    /// A pipeline with the built-in vertex stage, made on the same device. Where it culls and the transform mirrors, its
-    /// mirrored twin is used. One with the engine's own vertex stage will do if it takes no more than vertex buffer 0 and no
-    /// bind group of its own.
+    /// Is a pipeline made on the same device, normally with the built-in vertex stage. Where it culls and the transform
+    /// mirrors, its counterpart of the other winding is used. A pipeline with the engine's own vertex stage is accepted
+    /// if it takes no more than vertex buffer 0 and no bind group of its own.
     pub pipeline: &'a CasterPipeline,
-    /// Vertices laid out as the pipeline says, created with `BufferUsages::VERTEX`.
+    /// Holds vertices in the layout of the pipeline; created with `BufferUsages::VERTEX`.
     pub vertices: &'a wgpu::Buffer,
-    /// What to draw.
+    /// Selects what to draw.
     pub indices: MeshIndices,
-    /// Bounds of the drawn vertices in model space: finite, or empty for a mesh that casts nothing.
+    /// Bounds the drawn vertices in model space: finite, or empty for a mesh that casts nothing. Geometry outside its
+    /// bounds loses its shadow at times.
     pub bounds_model: Aabb,
-    /// Render space from model space: affine and finite, and so small that it takes the bounds to finite ones.
+    /// Is the transform to render space from model space: affine and finite, and with entries that take the bounds to
+    /// finite ones.
     pub render_from_model: Mat4,
 }

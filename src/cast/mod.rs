@@ -1,20 +1,20 @@
-//! First floor: depth renders of what can cast. Knows the fit and the device, and nothing of filters.
+//! Renders the depth of casters. It uses the fit and the device, and does not depend on how maps are sampled.
 //!
 //! ```text
 //! caster.rs              ShadowCaster and Revision: what the engine implements
-//! frame_casters.rs       the casters of a frame, each asked once
+//! frame_casters.rs       the casters of a frame, each queried once
 //! pipeline_descriptor.rs how a kind of caster is laid out and shaded
 //! pipeline.rs            CasterPipeline: the pipelines made of it
 //! pipeline_build.rs      the wgpu side of them; cube_pipeline.rs: those for six faces in one pass
 //! pipeline_reads.rs      what a vertex stage reads
 //! caster_limits.rs       what pipelines and passes need of a device's limits
-//! view_uniform.rs        what a vertex stage knows of the view
-//! mesh.rs                MeshCaster: a ready-made caster; mesh_descriptor.rs, mesh_check.rs: what it is and must be made of
+//! view_uniform.rs        the uniforms of a view in a vertex stage
+//! mesh.rs                MeshCaster: a ready-made caster; mesh_descriptor.rs, mesh_check.rs: its descriptor and checks
 //! closed.rs              which meshes are closed solids
-//! content.rs             what a layer holds, and what a frame must draw
+//! layer_cache.rs         what a layer caches, and what a frame must draw
 //! recorder.rs            the passes
 //! draw_casters.rs        the loop that draws casters in them
-//! cube_pass.rs           six faces in one pass; cube_rule.rs: when that is cheaper than a pass each
+//! cube_pass.rs           six faces in one pass; cube_rule.rs: when that is cheaper than a pass for each
 //! ```
 
 mod caster;
@@ -50,10 +50,10 @@ pub use pipeline_descriptor::{
 pub(crate) use recorder::Recorder;
 pub(crate) use view_uniform::VIEW_UNIFORM_BYTES;
 
-/// Nothing casts (reversed depth).
+/// Clears a map to the far plane (reversed depth): nothing casts.
 const CLEAR: wgpu::LoadOp<f32> = wgpu::LoadOp::Clear(0.0);
 
-/// A depth attachment that keeps what is drawn.
+/// Returns a depth attachment that stores what is drawn.
 fn depth_attachment(
     view: &wgpu::TextureView,
     load: wgpu::LoadOp<f32>,

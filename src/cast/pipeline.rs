@@ -1,4 +1,4 @@
-//! How one kind of caster is laid out and shaded: the depth-only pipelines.
+//! Defines `CasterPipeline`: the depth-only pipelines of one kind of caster.
 
 use std::sync::Arc;
 
@@ -13,11 +13,11 @@ use crate::cast::pipeline_reads::{VertexReads, beyond_a_mesh};
 use crate::error::CasterError;
 use crate::gpu::{DepthFormat, capture_device_errors};
 
-/// Depth-only pipelines for one kind of caster. Cheap to clone: a handle.
+/// Holds the depth-only pipelines of one kind of caster. It is a handle and cheap to clone.
 #[derive(Clone, Debug)]
 pub struct CasterPipeline {
     variants: Arc<Variants>,
-    /// For transforms that mirror: the other winding.
+    /// Selects the other winding, for transforms that mirror.
     mirrored: bool,
 }
 
@@ -25,11 +25,11 @@ pub struct CasterPipeline {
 struct Variants {
     device: wgpu::Device,
     by_format: ByFormat,
-    /// None for the engine's own WGSL.
+    /// Holds `None` for the engine's own WGSL.
     built_in: Option<(PositionAttribute, ModelTransform)>,
-    /// How vertex buffer 0 is read.
+    /// Describes how vertex buffer 0 is read.
     vertices: VertexReads,
-    /// What it takes that a ready-made mesh does not set.
+    /// Names what the pipeline takes that a ready-made mesh does not set.
     beyond_a_mesh: Option<String>,
     cube: Option<CubePipelines>,
     topology: wgpu::PrimitiveTopology,
@@ -43,11 +43,12 @@ impl PartialEq for CasterPipeline {
 }
 
 impl CasterPipeline {
-    /// Builds the pipeline; do this once per kind of caster, at load time.
+    /// Builds the pipelines; call this once per kind of caster, at load time.
     ///
     /// # Errors
-    /// [`CasterError`] for a layout or topology that cannot be drawn, or with the device's own words where it refuses the
-    /// pipeline (the engine's WGSL does not compile, an entry point is missing, a layout does not match).
+    /// Returns [`CasterError`] for a layout or topology that cannot be drawn, for an empty list of depth formats, for
+    /// more than the device's limits allow, or with the device's own message where it refuses the pipeline (the
+    /// engine's WGSL does not compile, an entry point is missing, a layout does not match).
     pub fn new(
         device: &wgpu::Device,
         descriptor: &CasterPipelineDescriptor<'_>,
@@ -85,14 +86,15 @@ impl CasterPipeline {
         })
     }
 
-    /// The wgpu pipeline for maps of `format`, for engines that record depth passes of their own; none where
-    /// [`CasterPipelineDescriptor::depth_formats`] did not name it.
+    /// Returns the wgpu pipeline for maps of `format`, for engines that record depth passes of their own. Returns
+    /// `None` if [`CasterPipelineDescriptor::depth_formats`] did not name the format.
     pub fn wgpu_pipeline(&self, format: DepthFormat) -> Option<&wgpu::RenderPipeline> {
         let windings = self.variants.by_format[format.index()].as_ref()?;
         Some(&windings[usize::from(self.mirrored)])
     }
 
-    /// The same pipeline for casters whose transform mirrors (negative determinant), so that culling takes the same faces.
+    /// Returns the same pipeline for casters whose transform mirrors (negative determinant), so that culling removes
+    /// the same faces.
     pub fn mirrored(&self) -> Self {
         Self {
             variants: Arc::clone(&self.variants),
@@ -100,25 +102,27 @@ impl CasterPipeline {
         }
     }
 
-    /// Where the built-in vertex stage expects the transform ([`ModelTransform::Identity`] for the engine's own WGSL).
+    /// Returns where the built-in vertex stage expects the transform ([`ModelTransform::Identity`] for the engine's own
+    /// WGSL).
     pub fn model_transform(&self) -> ModelTransform {
         self.variants
             .built_in
             .map_or(ModelTransform::Identity, |(_, model)| model)
     }
 
-    /// Returns the device that it was made on.
+    /// Returns the device that the pipelines were made on.
     pub(crate) fn device(&self) -> &wgpu::Device {
         &self.variants.device
     }
 
-    /// Returns the pipeline that draws the six faces of a cube in one pass; none for the engine's own WGSL.
-    pub(crate) fn six_views(&self) -> Option<&wgpu::RenderPipeline> {
+    /// Returns the pipeline that draws the six faces of a cube in one pass. Returns `None` for the engine's own WGSL,
+    /// or where the device refuses it.
+    pub(crate) fn multiview_pipeline(&self) -> Option<&wgpu::RenderPipeline> {
         let variants = &self.variants;
         variants.cube.as_ref()?.get(&variants.device, self.mirrored)
     }
 
-    /// Triangles of so many corners; of a strip, without counting restarts.
+    /// Returns the number of triangles that `corners` vertices or indices make; for a strip, restarts are not counted.
     pub(crate) fn triangles_of(&self, corners: u32) -> u32 {
         match self.variants.topology {
             wgpu::PrimitiveTopology::TriangleStrip => corners.saturating_sub(2),
@@ -126,14 +130,14 @@ impl CasterPipeline {
         }
     }
 
-    /// For strips, the format that indices must have; none where any will do.
+    /// Returns, for strips, the format that indices must have. Returns `None` for lists, which accept any format.
     pub(crate) fn strip_index_format(&self) -> Option<Option<wgpu::IndexFormat>> {
         let is_strip = self.variants.topology == wgpu::PrimitiveTopology::TriangleStrip;
         is_strip.then_some(self.variants.strip_index_format)
     }
 
-    /// Returns the bytes that vertex buffer 0 must have so that `vertices` vertices can be drawn in order, or any through
-    /// indices if it is 0.
+    /// Returns the bytes that vertex buffer 0 must have so that `vertices` vertices can be drawn in order. If
+    /// `vertices` is 0, since indices may choose any vertex, only data that step per instance count.
     pub(crate) fn vertex_bytes(&self, vertices: u32) -> u64 {
         self.variants.vertices.bytes(vertices)
     }

@@ -1,21 +1,21 @@
-//! The wgpu side of caster pipelines: layouts, vertex state, depth state.
+//! Builds the wgpu objects of caster pipelines: layouts, vertex state, depth state.
 
 use std::num::NonZeroU32;
 
 use crate::cast::pipeline_descriptor::{
     CasterPipelineDescriptor, CasterVertex, ModelTransform, PositionAttribute,
 };
-use crate::cast::view_uniform::{six_views_layout, view_layout};
-use crate::gpu::{DepthFormat, SIX_VIEWS};
+use crate::cast::view_uniform::{multiview_layout, view_layout};
+use crate::gpu::{ALL_FACES_MASK, DepthFormat};
 use crate::shader;
 
-/// The pipeline as described, and with the other winding; the same where nothing is culled.
+/// Holds the pipeline as described, and the one with the other winding; both are the same where nothing is culled.
 pub(crate) type BothWindings = [wgpu::RenderPipeline; 2];
 
-/// By [`DepthFormat::index`]; none for a format that no map of the engine has.
+/// Holds pipelines by [`DepthFormat::index`], and `None` for a format that the descriptor does not name.
 pub(crate) type ByFormat = [Option<BothWindings>; DepthFormat::ALL.len()];
 
-/// The pipelines for all formats that `descriptor` names.
+/// Creates the pipelines for all formats that `descriptor` names.
 pub(crate) fn create_pipelines(
     device: &wgpu::Device,
     descriptor: &CasterPipelineDescriptor<'_>,
@@ -46,8 +46,8 @@ pub(crate) fn create_pipelines(
     }
 }
 
-/// The built-in vertex stage for six views a pass.
-pub(crate) fn six_views(
+/// Creates pipelines with the built-in vertex stage that draw six faces in one multiview pass.
+pub(crate) fn multiview_pipelines(
     device: &wgpu::Device,
     descriptor: &CasterPipelineDescriptor<'_>,
     position: &PositionAttribute,
@@ -55,7 +55,7 @@ pub(crate) fn six_views(
 ) -> ByFormat {
     let modules = [shader::CASTER_MULTIVIEW, shader::CASTER_BUILTIN_MULTIVIEW];
     let source = modules.map(|module| module.source).concat();
-    built_in(device, descriptor, &source, position, model, SIX_VIEWS)
+    built_in(device, descriptor, &source, position, model, ALL_FACES_MASK)
 }
 
 fn built_in(
@@ -107,7 +107,7 @@ fn built_in(
     create_by_format(device, descriptor, &stages)
 }
 
-/// What differs between the built-in stages and the engine's own.
+/// Holds what differs between the built-in stages and the engine's own.
 struct Stages<'a> {
     source: &'a str,
     vertex_entry: &'a str,
@@ -129,7 +129,7 @@ fn create_by_format(
     });
     let view_layout = match stages.multiview_mask {
         None => view_layout(device),
-        Some(_) => six_views_layout(device),
+        Some(_) => multiview_layout(device),
     };
     let mut groups = vec![Some(&view_layout)];
     groups.extend_from_slice(stages.bind_group_layouts);

@@ -1,21 +1,24 @@
-//! What a caster pipeline is made of: where its vertices and transforms lie, how they are shaded, and what of that can be drawn.
+//! Describes what a caster pipeline is made of: the layout of vertices and transforms and how they are shaded. Also
+//! checks that it can be drawn.
 
 use crate::error::CasterError;
 use crate::gpu::DepthFormat;
 
-/// Where the built-in vertex stage finds positions.
+/// Tells the built-in vertex stage where to find positions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PositionAttribute {
-    /// Bytes from one vertex to the next; a multiple of 4.
+    /// Is the number of bytes from one vertex to the next; a multiple of 4.
     pub array_stride: u64,
-    /// Bytes from the start of a vertex to its position; a multiple of 4.
+    /// Is the number of bytes from the start of a vertex to its position; a multiple of 4. The position must end within
+    /// `array_stride`.
     pub offset: u64,
-    /// Any float, snorm or unorm format of two to four components; a missing z is 0, a fourth component is ignored.
+    /// May be any float, snorm or unorm format of two to four components. A missing z is 0, and a fourth component is
+    /// ignored.
     pub format: wgpu::VertexFormat,
 }
 
 impl PositionAttribute {
-    /// `Float32x3` at the start of vertices of `array_stride` bytes.
+    /// Makes an attribute of `Float32x3` at the start of vertices of `array_stride` bytes.
     pub const fn float32x3(array_stride: u64) -> Self {
         Self {
             array_stride,
@@ -25,84 +28,90 @@ impl PositionAttribute {
     }
 }
 
-/// Where the built-in vertex stage finds the transform that takes positions to render space.
+/// Tells the built-in vertex stage where to find the transform that takes positions to render space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ModelTransform {
-    /// Positions are in render space already.
+    /// States that positions are in render space already.
     Identity,
-    /// Four `Float32x4` columns of `render_from_model` in vertex buffer slot 1, stepped once per instance.
+    /// Reads four `Float32x4` columns of `render_from_model` from vertex buffer slot 1, stepped once per instance.
     InstanceMatrix {
-        /// Bytes from one instance to the next; a multiple of 4, at least `offset` + 64.
+        /// Is the number of bytes from one instance to the next; a multiple of 4, at least `offset` + 64.
         array_stride: u64,
-        /// Bytes from the start of an instance to the matrix; a multiple of 4.
+        /// Is the number of bytes from the start of an instance to the matrix; a multiple of 4.
         offset: u64,
     },
 }
 
 impl ModelTransform {
-    /// Tightly packed 64-byte matrices.
+    /// Describes tightly packed 64-byte matrices.
     pub const INSTANCE_MATRIX: Self = Self::InstanceMatrix {
         array_stride: 64,
         offset: 0,
     };
 }
 
-/// The vertex stage of a caster.
+/// Selects the vertex stage of a caster.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub enum CasterVertex<'a> {
-    /// The library's own: a position attribute in vertex buffer slot 0 and a model transform.
+    /// Uses the library's own stage: a position attribute in vertex buffer slot 0 and a model transform.
     BuiltIn {
-        /// Where positions are.
+        /// Tells where positions are.
         position: PositionAttribute,
-        /// Where the transform is.
+        /// Tells where the transform is.
         model: ModelTransform,
     },
-    /// The engine's WGSL on top of the library's caster module, for skinning, displacement and alpha masks.
+    /// Puts the engine's WGSL behind the library's caster module, for skinning, displacement and alpha masks.
     ///
-    /// The source may call `shadow_caster_clip(position_render: vec3<f32>) -> vec4<f32>` and must not use `@group(0)`. It is
-    /// drawn into one view at a time: a point light with such a caster draws a pass for each face.
+    /// The source may call `shadow_caster_clip(position_render: vec3<f32>) -> vec4<f32>` and must not use `@group(0)`.
+    /// It is drawn into one view at a time: a point light with such a caster draws a pass for each face.
     Wgsl {
-        /// WGSL with the entry points; the caster module is put before it.
+        /// Contains the WGSL with the entry points; the caster module is put before it.
         source: &'a str,
-        /// Name of the `@vertex` entry point; its `@builtin(position)` is what `shadow_caster_clip` returned.
+        /// Names the `@vertex` entry point; its `@builtin(position)` is what `shadow_caster_clip` returned.
         vertex_entry: &'a str,
-        /// Name of a `@fragment` entry point without outputs, which may `discard`; none for solid casters.
+        /// Names a `@fragment` entry point without outputs, which may `discard`; `None` for opaque casters.
         fragment_entry: Option<&'a str>,
-        /// Vertex buffers, from slot 0.
+        /// Lists the vertex buffers, from slot 0.
         buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
-        /// Layouts of bind groups 1 and up, which the caster sets in its `draw`.
+        /// Lists the layouts of bind groups 1 and up, which the caster sets in its `draw`.
         bind_group_layouts: &'a [Option<&'a wgpu::BindGroupLayout>],
     },
 }
 
-/// What a [`CasterPipeline`] is made of.
+/// Describes what a [`CasterPipeline`](crate::CasterPipeline) is made of.
+/// [`CasterPipeline::new`](crate::CasterPipeline::new) checks it, and returns [`CasterError`](crate::CasterError) for
+/// what cannot be drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct CasterPipelineDescriptor<'a> {
-    /// Label of the wgpu objects.
+    /// Labels the wgpu objects; "shadow caster" if `None`.
     pub label: wgpu::Label<'a>,
-    /// Vertex stage.
+    /// Selects the vertex stage. The default reads tightly packed `Float32x3` positions and one instance matrix.
     pub vertex: CasterVertex<'a>,
-    /// Which faces, as seen from the light, are left out of the map. `None` (the default) suits every mesh, open sheets
-    /// included. `Some(Face::Front)` is the classic cure for peter-panning: it needs closed solids, and light leaks where
-    /// they touch the ground exactly. `Some(Face::Back)` takes a
-    /// third off the cost of closed solids and changes nothing of their shadows; [`is_closed_solid`](crate::is_closed_solid)
-    /// tells them.
+    /// Selects which faces, as seen from the light, are left out of the map. `None` (the default) suits every mesh,
+    /// open sheets included. `Some(Face::Front)` is the classic cure for peter-panning: it needs closed solids, and
+    /// light leaks where they touch the ground exactly. `Some(Face::Back)` takes a third off the cost of closed solids
+    /// and changes nothing of their shadows; [`is_closed_solid`](crate::is_closed_solid) recognises them. A sheet whose
+    /// face toward the light is left out casts no shadow.
     pub cull: Option<wgpu::Face>,
-    /// Winding of front faces; counter-clockwise in the engine's space unless the model transform mirrors.
+    /// Is the winding of front faces: counter-clockwise by default. It is the winding in the engine's space unless the
+    /// model transform mirrors; [`CasterPipeline::mirrored`](crate::CasterPipeline::mirrored) serves such transforms.
+    /// With culling, a wrong winding leaves out the opposite faces.
     pub front_face: wgpu::FrontFace,
-    /// Triangle list or strip.
+    /// Is a triangle list (the default) or a triangle strip; any other topology is an error.
     pub topology: wgpu::PrimitiveTopology,
-    /// Index format for strips with primitive restart; none otherwise.
+    /// Is the index format of strips, for primitive restart; `None` (the default) otherwise. A format with a triangle
+    /// list is an error.
     pub strip_index_format: Option<wgpu::IndexFormat>,
-    /// Formats of the maps that it will be drawn into; not empty. Default `Float32` alone; add `Unorm16` where a light has
-    /// such a map. Each format is one more wgpu pipeline.
+    /// Lists the formats of the maps that it will be drawn into; not empty. The default is `Float32` alone; add
+    /// `Unorm16` where a light has such a map. Each format is one more wgpu pipeline. A light whose format is missing
+    /// returns [`ShadowError::CasterFormat`](crate::ShadowError::CasterFormat) when it is recorded.
     pub depth_formats: &'a [DepthFormat],
 }
 
 impl CasterPipelineDescriptor<'_> {
-    /// Tightly packed `Float32x3` positions, one instance matrix, nothing culled.
+    /// Describes tightly packed `Float32x3` positions and one instance matrix, with nothing culled.
     pub const fn new() -> Self {
         Self {
             label: None,

@@ -1,12 +1,12 @@
-//! What a caster pipeline reads beyond the view, so that a mesh can be checked against it.
+//! Describes what a caster pipeline reads beyond the view, so that a mesh can be checked against it.
 
 use crate::cast::CasterVertex;
 
-/// How vertex buffer 0 is read.
+/// Describes how vertex buffer 0 is read.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct VertexReads {
     array_stride: u64,
-    /// End of the last attribute within its vertex or instance; 0 where nothing is read.
+    /// Is the end of the last attribute within its vertex or instance; 0 where nothing is read.
     last_attribute_end: u64,
     per_instance: bool,
 }
@@ -46,7 +46,7 @@ impl VertexReads {
     }
 }
 
-/// Returns what a vertex stage takes beyond vertex buffer 0 and, of the built-in ones, the matrix in buffer 1.
+/// Returns what a vertex stage takes beyond vertex buffer 0 and, for the built-in stages, the matrix in buffer 1.
 pub(crate) fn beyond_a_mesh(vertex: &CasterVertex<'_>) -> Option<String> {
     let CasterVertex::Wgsl {
         buffers,

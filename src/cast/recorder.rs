@@ -1,4 +1,4 @@
-//! Which views need drawing this frame, and the passes that draw them.
+//! Determines which views need drawing this frame, and records the passes that draw them.
 
 use crate::cast::cube_pass::{CubePass, PreparedCubePass};
 use crate::cast::draw_casters::{DrawnCaster, PassDefaults, draw_casters};
@@ -8,7 +8,7 @@ use crate::cast::{CLEAR, CasterPipeline, FrameCasters};
 use crate::gpu::{DepthFormat, DepthMap, PendingUpload, UploadBuffer, capture_device_errors};
 use crate::{ShadowError, ShadowView};
 
-/// Draws views into the layers of a depth map, and remembers what each layer holds.
+/// Draws views into the layers of a depth map, and tracks what each layer caches.
 #[derive(Debug)]
 pub(crate) struct Recorder {
     uniforms: UploadBuffer,
@@ -16,40 +16,40 @@ pub(crate) struct Recorder {
     stride: u64,
     bind_group: wgpu::BindGroup,
     layers: Vec<Layer>,
-    /// wgpu's OpenGL backend copies no depth textures; there all casters of a view are drawn again.
+    /// Is false on wgpu's OpenGL backend, which copies no depth textures; there all casters of a view are drawn again.
     can_copy: bool,
-    /// Where the layers are the faces of a cube and the device can draw them at once.
+    /// Is present where the layers are the faces of a cube and the device can draw them at once.
     cube: Option<CubePass>,
 }
 
 #[derive(Debug)]
 struct Layer {
     label: String,
-    content: LayerCache,
-    /// A texture of one layer for the part that stands still; none before the first use.
+    cache: LayerCache,
+    /// Is the static-caster cache, a texture of one layer; `None` before its first use.
     static_cache: Option<DepthMap>,
-    /// The device had no room for one.
-    has_no_room: bool,
+    /// States that the device could not make one.
+    static_cache_failed: bool,
 }
 
-/// Everything that could fail, done before the encoder is touched.
+/// Holds everything that could fail, made before the encoder is touched.
 pub(crate) struct PreparedViews<'a> {
     upload: Option<PendingUpload>,
-    /// In place of a pass for each view.
+    /// Replaces the pass for each view.
     cube: Option<PreparedCubePass<'a>>,
-    /// The pipelines of the casters of all views that are drawn, one after the other.
+    /// Lists the pipelines of the casters of all views that are drawn, one view after the other.
     pipelines: Vec<&'a CasterPipeline>,
 }
 
 impl PreparedViews<'_> {
-    /// Was anything made on the device?
+    /// Returns whether anything was made on the device.
     pub fn uploads(&self) -> bool {
         self.upload.is_some() || self.cube.as_ref().is_some_and(PreparedCubePass::uploads)
     }
 }
 
 impl Recorder {
-    /// For maps of `layers` layers; `is_cube` where they are the six faces of one.
+    /// Makes a recorder for maps of `layers` layers; `is_cube` states that they are the six faces of one cube.
     pub fn new(
         device: &wgpu::Device,
         label: &str,
@@ -84,9 +84,9 @@ impl Recorder {
             })?;
         let layers = (0..layers).map(|layer| Layer {
             label: format!("{label} layer {layer}"),
-            content: LayerCache::default(),
+            cache: LayerCache::default(),
             static_cache: None,
-            has_no_room: false,
+            static_cache_failed: false,
         });
         Ok(Self {
             uniforms,
@@ -106,22 +106,22 @@ impl Recorder {
     /// Returns how many depth passes `draws` needs.
     pub fn passes(&self, draws: &ViewDraws, casters: &FrameCasters<'_>) -> u32 {
         let layer = &self.layers[draws.view.layer() as usize];
-        layer.content.plan(draws, casters, self.can_copy).passes()
+        layer.cache.plan(draws, casters, self.can_copy).passes()
     }
 
-    /// Does the layer of `view` hold that view, of whatever casters?
+    /// Returns whether the layer of `view` holds that view, whatever its casters.
     pub fn holds(&self, view: &ShadowView) -> bool {
-        self.layers[view.layer() as usize].content.is_of(view)
+        self.layers[view.layer() as usize].cache.is_of(view)
     }
 
-    /// Device memory of the still parts.
+    /// Returns the device memory, in bytes, of the static-caster caches.
     pub fn bytes(&self) -> u64 {
-        let parts = self.layers.iter().filter_map(|l| l.static_cache.as_ref());
-        parts.map(DepthMap::bytes).sum()
+        let caches = self.layers.iter().filter_map(|l| l.static_cache.as_ref());
+        caches.map(DepthMap::bytes).sum()
     }
 
-    /// Plans the frame for `map` and stages the uniforms of `views`. Each view comes to allow for the rounding of the depths
-    /// that its layer will hold.
+    /// Plans the frame for `map` and stages the uniforms of `views`. Each view is made to allow for the rounding of the
+    /// depths that its layer will hold.
     pub fn prepare<'a>(
         &mut self,
         device: &wgpu::Device,
@@ -135,7 +135,7 @@ impl Recorder {
             .resize(self.stride as usize * self.layers.len(), 0);
         for draws in views.iter_mut() {
             let layer = &mut self.layers[draws.view.layer() as usize];
-            draws.plan = layer.content.plan(draws, casters, self.can_copy);
+            draws.plan = layer.cache.plan(draws, casters, self.can_copy);
             if draws.plan == Plan::RenewStaticCache && !layer.make_static_cache(device, map) {
                 draws.plan = Plan::All;
             }
@@ -148,7 +148,7 @@ impl Recorder {
                     casters,
                 )?;
             }
-            let render_reach = layer.content.render_reach_after(draws);
+            let render_reach = layer.cache.render_reach_after(draws);
             draws.view = draws.view.over_depths_from(render_reach);
             let uniform = CasterViewUniform::of(&draws.view);
             let start = self.stride as usize * draws.view.layer() as usize;
@@ -173,10 +173,10 @@ impl Recorder {
         })
     }
 
-    /// Records what was planned; returns the number of passes.
+    /// Records what was planned and returns the number of passes.
     ///
-    /// What a layer holds is forgotten before anything is drawn into it and known again when its pass is complete: a caster
-    /// that panics leaves a layer behind that the next frame draws anew.
+    /// The state of a layer is reset before anything is drawn into it and set again when its pass is complete: a caster
+    /// that panics leaves a layer behind that the next frame draws again.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -186,16 +186,16 @@ impl Recorder {
         casters: &FrameCasters<'_>,
     ) -> u32 {
         if let (Some(cube), Some(prepared)) = (&mut self.cube, prepared.cube) {
-            // All layers are cleared, those of faces that nothing casts into as well.
-            let mut contents: Vec<LayerCache> =
-                self.layers.iter_mut().map(Layer::take_content).collect();
+            // The pass clears all layers, those of faces that nothing casts into as well.
+            let mut caches: Vec<LayerCache> =
+                self.layers.iter_mut().map(Layer::take_cache).collect();
             for draws in views.iter() {
-                contents[draws.view.layer() as usize].replace(draws, casters);
+                caches[draws.view.layer() as usize].replace(draws, casters);
             }
             cube.record(encoder, map, prepared, views, casters);
             for draws in views.iter() {
                 let index = draws.view.layer() as usize;
-                self.layers[index].content = std::mem::take(&mut contents[index]);
+                self.layers[index].cache = std::mem::take(&mut caches[index]);
             }
             return 1;
         }
@@ -210,8 +210,8 @@ impl Recorder {
             pipelines = others;
             let index = draws.view.layer();
             let layer = &mut self.layers[index as usize];
-            let mut content = layer.take_content();
-            content.replace(draws, casters);
+            let mut cache = layer.take_cache();
+            cache.replace(draws, casters);
             let mut pass = LayerPass {
                 encoder,
                 label: &layer.label,
@@ -223,37 +223,43 @@ impl Recorder {
             let (target, view) = (map.layer_view(index), &draws.view);
             passes += draws.plan.passes();
             match &layer.static_cache {
-                Some(part) if draws.plan != Plan::All => {
-                    let still = |caster: &DrawnCaster<'_>| content.is_still(caster.index);
-                    let still_casters = all.clone().filter(still);
+                Some(static_cache) if draws.plan != Plan::All => {
+                    let is_static = |caster: &DrawnCaster<'_>| cache.is_static(caster.index);
+                    let static_casters = all.clone().filter(is_static);
                     if draws.plan == Plan::RenewStaticCache {
-                        pass.draw(part.layer_view(0), CLEAR, view, still_casters, casters);
+                        pass.draw(
+                            static_cache.layer_view(0),
+                            CLEAR,
+                            view,
+                            static_casters,
+                            casters,
+                        );
                     } else {
-                        for caster in still_casters {
+                        for caster in static_casters {
                             draws.copied += 1;
                             draws.copied_triangles +=
                                 u64::from(casters.facts(caster.index).triangles);
                         }
                     }
                     pass.encoder.copy_texture_to_texture(
-                        part.layer_copy(0),
+                        static_cache.layer_copy(0),
                         map.layer_copy(index),
                         map.layer_extent(),
                     );
-                    let moving = all.filter(|caster| !still(caster));
+                    let moving = all.filter(|caster| !is_static(caster));
                     pass.draw(target, wgpu::LoadOp::Load, view, moving, casters);
                 }
                 _ => pass.draw(target, CLEAR, view, all, casters),
             }
-            layer.content = content;
+            layer.cache = cache;
         }
         passes
     }
 
-    /// Forgets what the layers hold, so that every view is drawn again.
+    /// Resets the state of all layers, so that every view is drawn again.
     pub fn invalidate(&mut self) {
         for layer in &mut self.layers {
-            layer.content = LayerCache::default();
+            layer.cache = LayerCache::default();
         }
         self.uniforms.invalidate();
         if let Some(cube) = &mut self.cube {
@@ -263,24 +269,25 @@ impl Recorder {
 }
 
 impl Layer {
-    /// Takes away what is known of the layer, which from now on holds nothing that can be relied on.
-    fn take_content(&mut self) -> LayerCache {
-        std::mem::take(&mut self.content)
+    /// Takes the state of the layer and leaves an empty one, under which no depths in the layer are relied on.
+    fn take_cache(&mut self) -> LayerCache {
+        std::mem::take(&mut self.cache)
     }
 
-    /// False where the device has no room for one: then all casters are drawn.
+    /// Makes the static-caster cache of the layer if it has none. Returns false where the device could not make one;
+    /// all casters are then drawn.
     fn make_static_cache(&mut self, device: &wgpu::Device, map: &DepthMap) -> bool {
-        if self.static_cache.is_none() && !self.has_no_room {
+        if self.static_cache.is_none() && !self.static_cache_failed {
             let label = format!("{} still part", self.label);
             self.static_cache =
                 DepthMap::new(device, &label, "map_size", map.size(), 1, map.format()).ok();
-            self.has_no_room = self.static_cache.is_none();
+            self.static_cache_failed = self.static_cache.is_none();
         }
         self.static_cache.is_some()
     }
 }
 
-/// A pass over one layer.
+/// Records passes over one layer.
 struct LayerPass<'a> {
     encoder: &'a mut wgpu::CommandEncoder,
     label: &'a str,
@@ -311,13 +318,14 @@ impl LayerPass<'_> {
             offsets: &[offset],
             map_size: view.map_size(),
         };
-        // That there is a pipeline for the format was checked when the frame was planned.
+        // The planning of the frame has checked that there is a pipeline for the format.
         let of_format = |pipeline: &'c CasterPipeline| pipeline.wgpu_pipeline(self.format);
         draw_casters(&mut pass, &defaults, view, drawn, casters, of_format);
     }
 }
 
-/// Adds the pipelines of a view's casters to `pipelines`, each of which must have been made on `device` and for `format`.
+/// Adds the pipelines of a view's casters to `pipelines`, each of which must have been made on `device` and for
+/// `format`.
 fn add_pipelines<'a>(
     pipelines: &mut Vec<&'a CasterPipeline>,
     device: &wgpu::Device,

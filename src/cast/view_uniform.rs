@@ -1,11 +1,11 @@
-//! Bind group 0 of a depth pass: what a caster's vertex stage knows of the view being rendered.
+//! Defines bind group 0 of a depth pass: the view being rendered, as a caster's vertex stage reads it.
 
 use bytemuck::{Pod, Zeroable};
 
 use crate::ShadowView;
 use crate::gpu::FACE_COUNT;
 
-/// Mirror of `ShadowCasterView` in `wgsl/caster.wgsl`.
+/// Mirrors `ShadowCasterView` in `wgsl/caster.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct CasterViewUniform {
@@ -26,13 +26,13 @@ impl CasterViewUniform {
     }
 }
 
-/// Layout of bind group 0: the view being rendered, chosen by a dynamic offset.
+/// Returns the layout of bind group 0: the view being rendered, chosen by a dynamic offset.
 pub(crate) fn view_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     uniform_layout(device, "shadow caster view", VIEW_UNIFORM_BYTES, true)
 }
 
-/// Layout of bind group 0 where six views are rendered at once.
-pub(crate) fn six_views_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+/// Returns the layout of bind group 0 where six faces are rendered at once.
+pub(crate) fn multiview_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     let bytes = VIEW_UNIFORM_BYTES * u64::from(FACE_COUNT);
     uniform_layout(device, "shadow caster faces", bytes, false)
 }

@@ -1,27 +1,29 @@
-//! World-fixed axes of a directional light, and boxes in them.
+//! Defines the world-fixed axes of a light and boxes in light space.
 
 use glam::{DMat3, DVec3};
 
 use crate::Aabb;
 
-/// Right-handed orthonormal axes of light space in world directions: x right, y up, z *toward* the light.
+/// Holds the right-handed orthonormal axes of light space in world directions: x right, y up, z *toward* the light.
 ///
-/// They depend on the light's direction and on the world's up axis alone, never on a camera, so that texels stay where they are.
+/// They depend on the light's direction and on the world's up axis alone, never on a camera, so that texels stay at
+/// their positions in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightAxes {
-    /// Rows are right, up and toward-light: `light_from_world * v` gives light coordinates of a world direction.
+    /// Has the rows right, up and toward-light: `light_from_world * v` gives light coordinates of a world direction.
     pub light_from_world: DMat3,
 }
 
-/// Cosine of the angle between light and up axis beyond which the up axis no longer orients the map.
+/// Is the cosine of the angle between light and up axis beyond which the up axis no longer orients the map.
 ///
-/// Below it the x axis is horizontal, so that ground seen under a grazing sun is a thin rectangle along x. Above it (within
-/// 26 degrees of the zenith) every roll sees the ground alike, and the axes follow the world's own, along which ground and
-/// walls tend to be cut.
+/// Below it the x axis is horizontal, so that ground seen under a grazing sun is a thin rectangle along x. Above it
+/// (within 26 degrees of the zenith) the ground looks alike under every roll, and the axes follow the world's own,
+/// along which ground and walls tend to be cut.
 const UP_COSINE: f64 = 0.9;
 
 impl LightAxes {
-    /// Axes for a light that shines along `direction_world` (any length but zero; finite), in a world whose up axis is `up_world`.
+    /// Returns the axes for a light that shines along `direction_world` (any length but zero; finite), in a world whose
+    /// up axis is `up_world`.
     pub fn new(direction_world: DVec3, up_world: DVec3) -> Self {
         let toward_light = -scaled_unit(direction_world);
         let up = scaled_unit(up_world);
@@ -37,29 +39,29 @@ impl LightAxes {
         }
     }
 
-    /// Axes of a view that looks along `forward` with `up` upward; unit vectors at right angles.
+    /// Returns the axes of a view that looks along `forward` with `up` upward. Both are unit vectors at right angles.
     pub(crate) fn looking(forward: DVec3, up: DVec3) -> Self {
         Self {
             light_from_world: DMat3::from_cols(forward.cross(up), up, -forward).transpose(),
         }
     }
 
-    /// World direction of the light's x axis.
+    /// Returns the world direction of the light's x axis.
     pub fn right(&self) -> DVec3 {
         self.light_from_world.row(0)
     }
 
-    /// World direction of the light's y axis.
+    /// Returns the world direction of the light's y axis.
     pub fn up(&self) -> DVec3 {
         self.light_from_world.row(1)
     }
 
-    /// World direction toward the light.
+    /// Returns the world direction toward the light.
     pub fn toward_light(&self) -> DVec3 {
         self.light_from_world.row(2)
     }
 
-    /// The box in absolute light space of a render-space box seen from `origin`.
+    /// Returns the box in absolute light space of a box in the render space that begins at `origin`.
     pub(crate) fn light_box(&self, bounds: &Aabb, origin: DVec3) -> LightBox {
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
         let center = self.light_from_world * (origin + (min + max) * 0.5);
@@ -77,12 +79,13 @@ impl LightAxes {
     }
 }
 
-/// Unit vector of `v`, also where its squared length would overflow or vanish.
+/// Returns the unit vector of `v`, even where its squared length would overflow or vanish.
 fn scaled_unit(v: DVec3) -> DVec3 {
     (v / v.abs().max_element()).normalize()
 }
 
-/// The world axis that is most nearly perpendicular to `up`; x where two are equal.
+/// Returns the world axis that is most nearly perpendicular to `up`, made perpendicular to it. Where two axes are
+/// equal, x is taken before z, and z before y.
 fn horizontal_reference(up: DVec3) -> DVec3 {
     let a = up.abs();
     let axis = if a.x <= a.y && a.x <= a.z {
@@ -95,7 +98,7 @@ fn horizontal_reference(up: DVec3) -> DVec3 {
     axis - up * axis.dot(up)
 }
 
-/// An interval box in absolute light space (f64; z grows toward the light).
+/// Is an axis-aligned box in absolute light space (f64; z grows toward the light).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LightBox {
     pub min: DVec3,
@@ -112,7 +115,7 @@ impl LightBox {
         self.min.cmpgt(self.max).any()
     }
 
-    /// The box with every side `distance` farther out.
+    /// Returns the box with every side `distance` farther out.
     pub fn grown(&self, distance: f64) -> Self {
         Self {
             min: self.min - distance,
@@ -120,12 +123,12 @@ impl LightBox {
         }
     }
 
-    /// The longer of its sides across the light; 0 for an empty box.
+    /// Returns the longer of its sides across the light; 0 for an empty box.
     pub fn widest_side(&self) -> f64 {
         (self.max - self.min).truncate().max_element().max(0.0)
     }
 
-    /// Distance from the origin of light space to the farthest corner.
+    /// Returns the distance from the origin of light space to the farthest corner.
     pub fn reach(&self) -> f64 {
         self.min.abs().max(self.max.abs()).length()
     }
@@ -140,7 +143,7 @@ impl LightBox {
         self.max = self.max.max(other.max);
     }
 
-    /// Do the two boxes overlap as seen from the light (xy only; touching counts)?
+    /// Returns whether the two boxes overlap as seen from the light (xy only; touching counts).
     pub fn overlaps_xy(&self, other: &Self) -> bool {
         self.min.x <= other.max.x
             && other.min.x <= self.max.x
@@ -153,7 +156,8 @@ impl LightBox {
 mod tests {
     use super::*;
 
-    /// Orthonormal to 4 ulp, right-handed and toward the light, for every axis and a hair off it.
+    /// Checks that axes are orthonormal to 4 ulp, right-handed and toward the light, for every axis and a tiny angle
+    /// off it.
     #[test]
     fn axes_are_orthonormal_for_every_direction() {
         let hair = 1e-7;
@@ -183,7 +187,7 @@ mod tests {
         }
     }
 
-    /// The interval box equals the box of the eight transformed corners.
+    /// Checks that the fast box equals the box of the eight transformed corners.
     #[test]
     fn light_box_is_the_box_of_the_corners() {
         let axes = LightAxes::new(DVec3::new(0.3, -0.7, 0.2), DVec3::Y);
@@ -197,7 +201,7 @@ mod tests {
         for corner in 0..8 {
             exact.include(axes.light_from_world * (origin + bounds.corner(corner).as_dvec3()));
         }
-        // magnitude 4e5, three products and sums: 8 ulps of f64
+        // At a magnitude of 4e5, three products and sums come to 8 ulps of f64.
         let tolerance = 8.0 * f64::EPSILON * 4e5;
         assert!(fast.min.abs_diff_eq(exact.min, tolerance));
         assert!(fast.max.abs_diff_eq(exact.max, tolerance));

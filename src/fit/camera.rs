@@ -1,30 +1,37 @@
-//! The engine's camera, taken as any pair of matrices, as half-spaces and as depth along the view.
+//! Turns the engine's camera, given as any pair of matrices, into half-spaces and depth along the view.
 
 use glam::{DMat4, DVec3, DVec4, Mat4, Vec3};
 
 use crate::ShadowError;
-use crate::fit::picture_corners::{PictureCorners, SliceSphere};
+use crate::fit::image_corners::{ImageCorners, SliceSphere};
 use crate::fit::region::{HalfSpace, HalfSpaces};
 
-/// The camera whose picture the shadows are for.
+/// Describes the camera for whose image the shadows are rendered.
 ///
-/// Any projection with WebGPU's clip volume (`-w ≤ x, y ≤ w`, `0 ≤ z ≤ w`) will do: perspective with finite or infinite far
-/// plane, forward or reversed depth, off-centre, orthographic. Only the volume counts, not the depth convention.
+/// Any projection with WebGPU's clip volume (`-w ≤ x, y ≤ w`, `0 ≤ z ≤ w`) is accepted: perspective with finite or
+/// infinite far plane, forward or reversed depth, off-centre, orthographic. Only the volume counts, not the depth
+/// convention.
+///
+/// A matrix that is not finite or has no finite inverse makes [`ShadowScene::frame`](crate::ShadowScene::frame) return
+/// [`ShadowError::CameraMatrix`]. Matrices of another camera than the one that draws the image leave receivers outside
+/// the maps, and these are then lit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraView {
-    /// View space from render space; a rigid transform in all but exotic engines.
+    /// Transforms render space to view space; a rigid transform in all but exotic engines. Its translation must be
+    /// relative to the frame's `origin`, as render space is.
     pub view_from_render: Mat4,
-    /// Clip space from view space. An orthographic camera is taken to look along -z of view space; a perspective one looks
-    /// where its w grows.
+    /// Transforms view space to clip space. An orthographic camera is taken to look along -z of view space; a
+    /// perspective one looks in the direction in which its w grows.
     pub clip_from_view: Mat4,
-    /// Distance along the view, in world units, beyond which receivers are left lit. `f32::INFINITY` (the default of
-    /// [`CameraView::new`]) covers all that the projection and the receivers' bounds let one see. Too large a value costs
-    /// resolution; too small a value ends the shadows in plain sight.
+    /// Is the distance along the view, in world units, beyond which receivers are left lit: above 0, infinity allowed.
+    /// Any other value is [`ShadowError::OutOfRange`]. `f32::INFINITY` (the default of [`CameraView::new`]) covers all
+    /// that the projection and the receivers' bounds make visible. Too large a value costs resolution; too small a
+    /// value ends the shadows in plain sight.
     pub max_distance: f32,
 }
 
 impl CameraView {
-    /// A camera with no distance limit of its own.
+    /// Makes a camera with no distance limit of its own.
     pub const fn new(view_from_render: Mat4, clip_from_view: Mat4) -> Self {
         Self {
             view_from_render,
@@ -33,7 +40,7 @@ impl CameraView {
         }
     }
 
-    /// The same camera with shadows out to `max_distance` world units along the view.
+    /// Returns the same camera with shadows out to `max_distance` world units along the view.
     pub const fn with_max_distance(self, max_distance: f32) -> Self {
         Self {
             max_distance,
@@ -41,7 +48,7 @@ impl CameraView {
         }
     }
 
-    /// Returns the visible volume in render space. `camera` is the place in the frame's list, for errors.
+    /// Returns the visible volume in render space. `camera` is the index in the frame's list, for errors.
     pub(crate) fn frustum(&self, camera: usize) -> Result<CameraFrustum, ShadowError> {
         const VIEW: &str = "CameraView::view_from_render";
         let view_from_render = checked(&self.view_from_render, VIEW, camera)?;
@@ -65,7 +72,8 @@ impl CameraView {
         ];
         let mut planes = HalfSpaces::default();
         for side in sides {
-            // An infinite far plane has no direction and keeps everything: w - z is a constant, or vanishes at this scale.
+            // An infinite far plane has no direction and keeps everything: w - z is a constant, or vanishes at this
+            // scale.
             let scale = rows[3].truncate().length() + side.w.abs();
             if side.truncate().length() > 1e-12 * scale {
                 planes.push(HalfSpace::from_homogeneous(side));
@@ -94,43 +102,44 @@ impl CameraView {
             eye,
             forward,
             render_from_view,
-            corners: PictureCorners::new(&clip_from_view, forward_view),
+            corners: ImageCorners::new(&clip_from_view, forward_view),
             max_distance: f64::from(self.max_distance),
         })
     }
 }
 
-/// What a camera sees, in render space.
+/// Holds the volume that a camera sees, in render space.
 #[derive(Debug)]
 pub(crate) struct CameraFrustum {
     pub planes: HalfSpaces,
     eye: DVec3,
     forward: DVec3,
     render_from_view: DMat4,
-    corners: PictureCorners,
+    corners: ImageCorners,
     max_distance: f64,
 }
 
 impl CameraFrustum {
-    /// Depths along the view at which the volume begins and ends, whatever is in it; the end may be infinite.
+    /// Returns the depths along the view at which the volume begins and ends, whatever is in it; the end may be
+    /// infinite.
     pub fn depth_range(&self) -> (f64, f64) {
         let corners = &self.corners;
         (corners.depth_near, corners.depth_far.min(self.max_distance))
     }
 
-    /// Returns the distance limit, in world units; infinite for none.
+    /// Returns the distance limit in world units; infinite if there is no limit.
     pub fn max_distance(&self) -> f64 {
         self.max_distance
     }
 
-    /// Unit vector along the view.
+    /// Returns the unit vector along the view.
     pub fn forward(&self) -> DVec3 {
         self.forward
     }
 
-    /// World height of the picture at a depth along the view; infinite where its corners lie at infinity, as a projection that
-    /// leans far enough has it.
-    pub fn picture_height(&self, depth: f64) -> f64 {
+    /// Returns the world height of the image at a depth along the view. It is infinite where the image's corners are at
+    /// infinity, which happens under sufficiently oblique projections.
+    pub fn image_height(&self, depth: f64) -> f64 {
         let [bottom, _, top, _] = self.corners.at(depth);
         let height = bottom.distance(top);
         if height.is_nan() {
@@ -140,7 +149,7 @@ impl CameraFrustum {
         }
     }
 
-    /// A sphere that holds the slice between two depths along the view.
+    /// Returns a sphere that holds the slice between two depths along the view.
     pub fn slice_sphere(&self, depth_near: f64, depth_far: f64) -> SliceSphere {
         let (center, radius) = self.corners.sphere_in_view(depth_near, depth_far);
         SliceSphere {
@@ -149,17 +158,17 @@ impl CameraFrustum {
         }
     }
 
-    /// Where the camera stands.
+    /// Returns the camera's position in render space.
     pub fn eye_render(&self) -> Vec3 {
         self.eye.as_vec3()
     }
 
-    /// Depth along the view in world units.
+    /// Returns the depth of a point along the view in world units.
     pub fn depth(&self, point_render: DVec3) -> f64 {
         self.forward.dot(point_render - self.eye)
     }
 
-    /// The part of the volume between two depths along the view.
+    /// Returns the part of the volume between two depths along the view.
     pub fn slice(&self, depth_near: f64, depth_far: f64) -> HalfSpaces {
         let mut planes = self.planes;
         let at_eye = self.forward.dot(self.eye);

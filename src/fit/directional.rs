@@ -1,4 +1,4 @@
-//! The fit of a directional light: what can be seen receiving, and every caster that can reach it.
+//! Fits the cascades of a directional light to the visible receivers and to every caster that can reach them.
 
 use glam::DVec3;
 
@@ -14,32 +14,32 @@ use crate::fit::stability::Stability;
 use crate::fit::visible::{self, Seen, SeenBounds};
 use crate::{Aabb, ShadowError};
 
-/// Most cascades that one light may have.
+/// Is the largest number of cascades that one light may have.
 pub(crate) const MAX_CASCADES: usize = 8;
 
-/// Where receivers count.
+/// Selects the receivers that count.
 #[derive(Clone, Copy)]
 pub(crate) enum Region<'a> {
-    /// What any of these cameras sees of them.
+    /// Counts what any of these cameras sees of the receivers.
     Cameras(&'a [CameraFrustum]),
-    /// All that lies in a given box; the light_bounds then is the box, whatever the casters.
+    /// Counts all that is inside a given box. The light-space bounds then cover the box, whatever the casters.
     Bounds(Aabb),
-    /// Everywhere.
+    /// Counts all receivers.
     Everything,
 }
 
-/// What a frame brings.
+/// Holds the input of a frame.
 pub(crate) struct FitInput<'a> {
     pub axes: LightAxes,
     pub origin: DVec3,
     pub region: Region<'a>,
-    /// Bounds of what casts; empty ones cast nothing.
+    /// Holds the bounds of what casts; empty ones cast nothing.
     pub casters: &'a [Aabb],
-    /// Bounds of what receives.
+    /// Holds the bounds of what receives.
     pub receivers: &'a [Aabb],
 }
 
-/// What the light was made with.
+/// Holds the settings that the light was made with.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FitLimits {
     pub map_size: u32,
@@ -49,44 +49,46 @@ pub(crate) struct FitLimits {
     pub stability: Stability,
 }
 
-/// A caster as the fit sees it.
+/// Holds what the fit needs to know of a caster.
 #[derive(Clone, Copy, Debug)]
 struct CasterBounds {
     light: LightBox,
-    /// False where no visible receiver lies behind the caster: a ground plane below everything shadows nothing.
+    /// Is false where no visible receiver is behind the caster: a ground plane below everything shadows nothing.
     can_shadow: bool,
 }
 
 impl CasterBounds {
-    /// Light-space box of the caster with all that rounding may have taken from it: what a decision against it must miss.
+    /// Returns the light-space box of the caster, grown by all that rounding may have taken from it: a test that
+    /// rejects the caster must reject this box.
     fn widest_light(&self, spacing: Spacing) -> LightBox {
         spacing.widest(&self.light)
     }
 }
 
-/// The light_bounds of a light, kept from frame to frame for their hysteresis.
+/// Holds the light-space bounds of a light's cascades, kept from frame to frame for their hysteresis.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct DirectionalFit {
-    /// One per cascade; none for a cascade that nothing can shadow.
+    /// Has one entry per cascade, `None` for a cascade in which nothing can cast a shadow.
     pub light_bounds: [Option<LightSpaceBounds>; MAX_CASCADES],
     held: [Option<LightSpaceBounds>; MAX_CASCADES],
-    /// Of the cascades of a camera's view.
+    /// Describes the slices of the cascades of a camera's view.
     pub slices: [Option<SliceReport>; MAX_CASCADES],
 }
 
-/// Lists that keep their memory from frame to frame.
+/// Holds lists that are reused from frame to frame.
 #[derive(Debug, Default)]
 pub(crate) struct FitScratch {
-    /// One entry per caster, in order.
+    /// Has one entry per caster, in order.
     casters: Vec<CasterBounds>,
     seen: Vec<Seen>,
     footprint: FootprintScratch,
 }
 
 impl DirectionalFit {
-    /// The light_bounds for this frame; `scratch.casters` is filled.
+    /// Returns the fit for this frame and fills `scratch.casters`.
     ///
-    /// An error where what casts and receives lies so far from the world's origin that f64 does not tell its places apart.
+    /// Returns an error where casters and receivers are so far from the world's origin that f64 does not distinguish
+    /// their positions.
     pub fn fit(
         &self,
         input: &FitInput<'_>,
@@ -129,8 +131,9 @@ impl DirectionalFit {
         Ok(next)
     }
 
-    /// Returns the light_bounds of a cascade that something casts into, and adds its casters to `drawn`: those of which some part lies
-    /// over the light_bounds, on the way from its receivers to the light. `scratch` is that of the fit.
+    /// Returns the light-space bounds of a cascade that something casts into, and adds its casters to `drawn`: those of
+    /// which some part is within the map rectangle, seen along the light, and in front of the far plane. `scratch` is
+    /// the one that the fit has filled.
     pub fn cull(
         &self,
         cascade: usize,
@@ -143,16 +146,16 @@ impl DirectionalFit {
         let volume = ExtrudedRect::new(&input.axes, input.origin, &light_bounds.rect);
         let all = (0u32..).zip(scratch.casters.iter().zip(input.casters));
         drawn.extend(all.filter_map(|(index, (caster, bounds))| {
-            let marks = caster.can_shadow
+            let casts_into_bounds = caster.can_shadow
                 && light_bounds.holds_part_of(&caster.widest_light(spacing))
                 && volume.meets(bounds);
-            marks.then_some(index)
+            casts_into_bounds.then_some(index)
         }));
         Some(light_bounds)
     }
 }
 
-/// How finely f64 tells places in `required` apart, if that is fine enough for the map of a cascade.
+/// Returns how finely f64 distinguishes positions in `required`, if that is fine enough for the map of a cascade.
 fn checked_spacing(
     input: &FitInput<'_>,
     limits: &FitLimits,
@@ -161,7 +164,8 @@ fn checked_spacing(
 ) -> Result<Spacing, ShadowError> {
     let spacing = Spacing::around(input.origin, required);
     let extent = || match slice {
-        // Not what is seen: that may be a corner of something, which needs no finer texels than the rest of the picture.
+        // This is the extent of the slice, not of what is seen: that may be a corner of an object, which needs no finer
+        // texels than the rest of the image.
         Some(slice) if limits.stability == Stability::Rungs => {
             let (depth_near, depth_far) = slice.between;
             let sphere = slice.camera.slice_sphere(depth_near, depth_far);
@@ -174,7 +178,7 @@ fn checked_spacing(
     spacing.checked(extent, limits.map_size, floor, distance)
 }
 
-/// The wider side, seen from the light, of all that the frame brings.
+/// Returns the wider side, seen from the light, of all casters and receivers of the frame together.
 fn widest_given(input: &FitInput<'_>) -> f64 {
     let given = input.casters.iter().chain(input.receivers);
     let given = given
@@ -183,8 +187,8 @@ fn widest_given(input: &FitInput<'_>) -> f64 {
     input.axes.light_box(&given, DVec3::ZERO).widest_side()
 }
 
-/// Returns cascade `cascade` of the first camera's view; none without a camera, or where its depths hold nothing. All cameras
-/// are divided at the same depths.
+/// Returns cascade `cascade` of the first camera's view. Returns `None` without a camera, or where its depths contain
+/// nothing. All cameras are divided at the same depths.
 fn camera_slice<'a>(
     input: &FitInput<'a>,
     limits: &FitLimits,
@@ -206,7 +210,7 @@ fn camera_slice<'a>(
     };
     let end = |index| limits.split.depth(index, limits.cascades, near, far);
     let between = (end(cascade), end(cascade + 1));
-    // An explicit end before all that is seen leaves nothing to its cascade.
+    // An explicit end before all that is seen leaves its cascade empty.
     let is_empty = between.0 == between.1 && near < far;
     (!is_empty).then_some(Slice {
         camera,
@@ -215,7 +219,7 @@ fn camera_slice<'a>(
     })
 }
 
-/// Light-space box of the receivers that cascade `cascade` is for; none where there are none.
+/// Returns the light-space box of the receivers that cascade `cascade` is for, or `None` where there are none.
 fn required_box(
     input: &FitInput<'_>,
     limits: &FitLimits,
@@ -252,7 +256,7 @@ fn required_box(
     (!required.is_empty()).then_some(required)
 }
 
-/// The depths of `seen` over the whole of a slice's sphere.
+/// Returns a box with the depths of `seen` and the whole width of a slice's sphere.
 fn around_slice(
     input: &FitInput<'_>,
     camera: &CameraFrustum,
@@ -267,10 +271,10 @@ fn around_slice(
     }
 }
 
-/// Can a shadow of `caster` fall on anything visible? A point is shadowed by a point of the caster further along the way to
-/// the light, so on each world axis the caster must reach beyond the receivers' near end in the light's direction. A flat
-/// floor under everything else fails this (it reaches just as far as the lowest receiver: itself), and neither widens the
-/// light_bounds nor is drawn.
+/// Returns whether a shadow of `caster` can fall on anything visible. A point is shadowed by a point of the caster
+/// further along the way to the light, so on each world axis the caster must reach beyond the receivers' near end in
+/// the light's direction. A flat floor under everything else fails this (it reaches just as far as the lowest receiver:
+/// itself), and neither widens the light-space bounds nor is drawn.
 fn can_shadow(caster: &Aabb, receivers: &SeenBounds, toward_light: DVec3) -> bool {
     let (low, high) = (caster.min.as_dvec3(), caster.max.as_dvec3());
     (0..3).all(|axis| {
@@ -285,8 +289,9 @@ fn can_shadow(caster: &Aabb, receivers: &SeenBounds, toward_light: DVec3) -> boo
     })
 }
 
-/// The light_bounds for receivers in `required`: seen from the light, what both receivers and casters cover. What rounding makes
-/// doubtful counts as reaching.
+/// Returns the light-space bounds for receivers in `required`: seen from the light, what both receivers and casters
+/// cover. A caster counts as reaching the receivers where rounding makes that doubtful. Returns `None` where no caster
+/// reaches them.
 fn fit_bounds(
     input: &FitInput<'_>,
     limits: &FitLimits,
@@ -328,7 +333,7 @@ fn fit_bounds(
         map_size: limits.map_size,
         margin_texels: limits.margin_texels,
         texel_floor,
-        whole: f64::INFINITY,
+        full_half_side: f64::INFINITY,
     };
     let rect = MapRect::fit(&request, held.map(|held| &held.rect));
     let depth = |near| {
@@ -339,8 +344,9 @@ fn fit_bounds(
         rect,
         depth: depth(covered.max.z),
     };
-    // Only what stands over the light_bounds counts for the near rect: a wide ground's far end does not. The rounded light_bounds is
-    // larger than what was asked for, so this also takes in casters that touch only its rim.
+    // Only the part of a caster inside the extruded map rectangle counts for the near plane: the far end of a wide
+    // ground does not. The quantized light-space bounds are larger than was requested, so this also takes in casters
+    // that touch only their border.
     let mut over_rect = HalfSpaces::default();
     push_extruded_rect(&mut over_rect, &input.axes, input.origin, &rect);
     let mut nearest = covered.min.z;
@@ -359,14 +365,14 @@ fn fit_bounds(
     })
 }
 
-/// Four ulps of f32 at the farthest render coordinate of what is covered, up to the highest receiver: finer texels than
-/// receivers' positions would resolve nothing. How high a caster stands above them does not count.
+/// Returns four ulps of f32 at the farthest render coordinate of what is covered, up to the highest receiver: texels
+/// finer than receivers' positions would resolve nothing. The height of a caster above the receivers does not count.
 fn texel_floor(input: &FitInput<'_>, covered: &LightBox, highest_receiver: f64) -> f64 {
     let reach = render_reach(input, covered, highest_receiver);
     4.0 * f64::from(f32::EPSILON) * reach.max(f64::from(f32::MIN_POSITIVE) * 1e8)
 }
 
-/// The farthest render coordinate, along an axis of the light, of what is covered up to the highest receiver.
+/// Returns the farthest render coordinate, along an axis of the light, of what is covered up to the highest receiver.
 fn render_reach(input: &FitInput<'_>, covered: &LightBox, highest_receiver: f64) -> f64 {
     let origin_light = input.axes.light_from_world * input.origin;
     let highest = covered.max.with_z(highest_receiver);

@@ -1,4 +1,5 @@
-//! The space over a rect of a directional light, endless toward the light: what casters must reach into to leave a mark.
+//! Defines the map rectangle of a directional light extruded without end toward the light: the volume that casters must
+//! reach into to cast into the map.
 
 use glam::{DVec2, DVec3};
 
@@ -7,20 +8,21 @@ use crate::fit::LightAxes;
 use crate::fit::map_rect::MapRect;
 use crate::fit::region::{HalfSpace, HalfSpaces};
 
-/// The volume over a rect, ready to be asked of many boxes.
+/// Is the volume over a map rectangle, prepared so that many boxes can be tested against it.
 ///
-/// Seen along the light a box is a hexagon, whose sides run along the projected world axes. Two convex figures in the plane
-/// are apart exactly if a normal of one's sides separates them (Gottschalk et al. 1996): two normals of the rect, and these
-/// three. The caller has asked the rect's own already, by the box's interval in light space.
+/// Seen along the light a box is a hexagon, whose sides run along the projected world axes. Two convex figures in the
+/// plane are apart exactly if a normal of one's sides separates them (Gottschalk et al. 1996): two normals of the
+/// rectangle, and three of the hexagon. The caller has tested the rectangle's own already, with the box's interval in
+/// light space.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ExtrudedRect {
     center_render: DVec3,
-    /// World distance by which that may be off.
+    /// Is the world distance by which the centre may be off.
     center_error: f64,
     sides: [Side; 3],
 }
 
-/// A normal of the hexagon's sides, as a direction of render space, and how far both figures reach along it.
+/// Is a normal of the hexagon's sides, as a direction of render space, with the half-extent of the rectangle along it.
 #[derive(Clone, Copy, Debug)]
 struct Side {
     normal: DVec3,
@@ -44,20 +46,20 @@ impl ExtrudedRect {
             }
         });
         Self {
-            // Any point of the axis will do: normals are perpendicular to the light.
+            // Any point of the axis is as good: normals are perpendicular to the light.
             center_render: center_world - origin,
-            // A few ulps of what was subtracted.
+            // The error is a few ulps of what was subtracted.
             center_error: 8.0 * f64::EPSILON * origin.length().max(center_world.length()),
             sides,
         }
     }
 
-    /// Does the box, seen along the light, meet the rect on all of the hexagon's normals?
+    /// Returns whether the box, seen along the light, overlaps the rectangle on all of the hexagon's normals.
     pub fn meets(&self, bounds: &Aabb) -> bool {
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
         let between = (min + max) * 0.5 - self.center_render;
         let half = (max - min) * 0.5;
-        // What rounding may add: a few ulps of the coordinates.
+        // This is what rounding may add: a few ulps of the coordinates.
         let slack =
             16.0 * f64::EPSILON * self.center_render.abs().max_element() + self.center_error;
         self.sides.iter().all(|side| {
@@ -67,14 +69,14 @@ impl ExtrudedRect {
     }
 }
 
-/// Adds the four sides of a rect to a region of render space.
+/// Adds the four sides of an extruded map rectangle to a region of render space.
 pub(crate) fn push_extruded_rect(
     region: &mut HalfSpaces,
     axes: &LightAxes,
     origin: DVec3,
-    plane: &MapRect,
+    rect: &MapRect,
 ) {
-    let (min, max) = (plane.min, plane.max());
+    let (min, max) = (rect.min, rect.max());
     for (axis, low, high) in [(axes.right(), min.x, max.x), (axes.up(), min.y, max.y)] {
         let origin = axis.dot(origin);
         region.push(HalfSpace {
@@ -93,18 +95,18 @@ mod tests {
     use super::*;
     use crate::fit::LightBox;
 
-    /// Pseudo-random numbers in -1..1.
+    /// Returns pseudo-random numbers in -1..1.
     fn noise(state: &mut u32) -> f64 {
         *state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
         f64::from(*state) / f64::from(u32::MAX) * 2.0 - 1.0
     }
 
-    /// Interval and volume together say what clipping the box by the four sides says, but for boxes that touch within 1e-9;
-    /// and the volume does sort some out that the interval lets pass.
+    /// Checks that interval and volume together agree with clipping the box by the four sides, except for boxes that
+    /// touch within 1e-9, and that the volume culls some boxes that the interval lets pass.
     #[test]
     fn an_extruded_rect_meets_what_reaches_into_it() {
         let mut state = 1;
-        let (mut inside, mut sorted_out) = (0, 0);
+        let (mut inside, mut culled) = (0, 0);
         for _ in 0..8000 {
             let mut random = || noise(&mut state);
             let direction = DVec3::new(random(), random(), random());
@@ -140,8 +142,8 @@ mod tests {
             assert!(met || !clipped(-1e-9), "{bounds:?} reaches in");
             assert!(!met || clipped(1e-9), "{bounds:?} does not reach in");
             inside += usize::from(met);
-            sorted_out += usize::from(interval && !met);
+            culled += usize::from(interval && !met);
         }
-        assert!(inside > 400 && sorted_out > 100, "{inside} {sorted_out}");
+        assert!(inside > 400 && culled > 100, "{inside} {culled}");
     }
 }

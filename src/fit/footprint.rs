@@ -1,4 +1,5 @@
-//! How much of a cascade's map falls on its slice of the view, and how its texels compare with the picture's pixels.
+//! Measures how much of a cascade's map falls on its slice of the view, and how its texels compare with the image's
+//! pixels.
 
 use glam::{DVec2, DVec3, Vec2};
 
@@ -9,39 +10,40 @@ use crate::fit::extruded_rect::push_extruded_rect;
 use crate::fit::map_rect::MapRect;
 use crate::fit::visible::SeenBounds;
 
-/// What of its slice of the camera's view a cascade covers, and how finely.
+/// Reports which slice of the camera's view a cascade covers, and how finely.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SliceReport {
-    /// Depth along the view, in world units, at which the cascade's slice begins: for the first the nearest visible receiver, or
-    /// the camera's near plane under [`Stability::Rotation`](crate::Stability::Rotation).
+    /// Is the depth along the view, in world units, at which the cascade's slice begins. For the first cascade that is
+    /// the nearest visible receiver, or the camera's near plane under
+    /// [`Stability::Rotation`](crate::Stability::Rotation).
     pub depth_near: f32,
-    /// Depth at which it ends.
+    /// Is the depth along the view, in world units, at which the slice ends.
     pub depth_far: f32,
-    /// Share of the map's texels that fall on the slice, within the bounds of what is visible: 0 to 1. Of a map that is small
-    /// against this the rest lies behind the camera or beside its picture.
+    /// Is the share of the map's texels that fall on the slice, within the bounds of what is visible: 0 to 1. The rest
+    /// of the map, most of it where this is small, is behind the camera or beside its image.
     pub share_of_map: f32,
-    /// Texels across the height of the picture, on a surface that faces both light and camera: the fewest (coarser axis, nearest
-    /// depth) and the most (finer axis, farthest depth). Infinite where the picture has no end at that depth, as under a
-    /// projection that leans.
+    /// Counts the texels across the height of the image, on a surface that faces both light and camera: x is the fewest
+    /// (coarser axis, nearest depth) and y the most (finer axis, farthest depth). The counts are infinite where the
+    /// image has no end at that depth, as under an oblique projection.
     pub texels_across_picture: Vec2,
 }
 
 impl SliceReport {
-    /// Texels per pixel of a picture so many pixels high: the fewest and the most. Below 1, edges show their texels; far above
-    /// 1, the map could be smaller.
-    pub fn texels_per_pixel(&self, picture_height_pixels: u32) -> Vec2 {
-        self.texels_across_picture / picture_height_pixels as f32
+    /// Returns the texels per pixel of an image that is `image_height_pixels` pixels high: x is the fewest and y the
+    /// most. Below 1, edges show their texels; far above 1, the map could be smaller.
+    pub fn texels_per_pixel(&self, image_height_pixels: u32) -> Vec2 {
+        self.texels_across_picture / image_height_pixels as f32
     }
 }
 
-/// Lists that keep their memory from frame to frame.
+/// Holds lists that are reused from frame to frame.
 #[derive(Debug, Default)]
 pub(crate) struct FootprintScratch {
     points: Vec<DVec2>,
     hull: Vec<DVec2>,
 }
 
-/// A cascade of a camera's view.
+/// Is a cascade's slice of a camera's view.
 pub(crate) struct Slice<'a> {
     pub camera: &'a CameraFrustum,
     pub visible: &'a SeenBounds,
@@ -49,7 +51,7 @@ pub(crate) struct Slice<'a> {
 }
 
 impl Slice<'_> {
-    /// How `rect` covers it.
+    /// Returns how `rect` covers the slice.
     pub fn report(
         &self,
         axes: &LightAxes,
@@ -64,7 +66,7 @@ impl Slice<'_> {
             self.visible.render_min.as_vec3(),
             self.visible.render_max.as_vec3(),
         );
-        // Relative to the rect, so that nothing is lost to a distant origin.
+        // The points are relative to the rectangle, so that a distant origin costs no precision.
         scratch.points.clear();
         region.visit_vertices(&visible, |vertex| {
             let light = axes.light_from_world * (origin + vertex);
@@ -72,7 +74,7 @@ impl Slice<'_> {
         });
         let size = rect.max() - rect.min;
         let share = hull_area(scratch) / (size.x * size.y);
-        let height = |depth| self.camera.picture_height(depth);
+        let height = |depth| self.camera.image_height(depth);
         let texels = DVec2::new(
             height(near) / rect.texel.max_element(),
             height(far) / rect.texel.min_element(),
@@ -86,7 +88,7 @@ impl Slice<'_> {
     }
 }
 
-/// Area of the convex hull of `scratch.points` (Andrew's monotone chain, 1979).
+/// Returns the area of the convex hull of `scratch.points` (Andrew's monotone chain, 1979).
 fn hull_area(scratch: &mut FootprintScratch) -> f64 {
     let FootprintScratch { points, hull } = scratch;
     points.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
@@ -95,7 +97,7 @@ fn hull_area(scratch: &mut FootprintScratch) -> f64 {
         [.., a, b] => (*b - *a).perp_dot(next - *b) > 0.0,
         _ => true,
     };
-    // The lower chain from left to right, then the upper one back; the second never takes points of the first away.
+    // The lower chain goes from left to right, then the upper one back; the second never removes points of the first.
     for &point in points.iter() {
         while hull.len() >= 2 && !turns_left(hull, point) {
             hull.pop();
@@ -141,13 +143,13 @@ mod tests {
         ];
         assert_eq!(area(&square), 4.0);
         assert_eq!(area(&[(0.0, 0.0), (3.0, 0.0), (0.0, 4.0), (0.0, 4.0)]), 6.0);
-        // A hexagon of side 1.
+        // This is a hexagon of side 1.
         let hexagon: Vec<_> = (0..6)
             .map(|corner| f64::from(corner) * std::f64::consts::FRAC_PI_3)
             .map(|angle| (angle.cos(), angle.sin()))
             .collect();
         assert!((area(&hexagon) - 1.5 * 3.0_f64.sqrt()).abs() < 1e-12);
-        // Figures without area, down to none at all.
+        // These figures have no area; the first has no points.
         for flat in [
             &[][..],
             &[(1.0, 2.0)],

@@ -1,7 +1,8 @@
-//! The fit of a local light's views: the part of each that receivers and casters share, and a near plane for all of them.
+//! Fits the views of a local light: the part of each that receivers and casters share, and one near plane for all of
+//! them.
 //!
-//! Map coordinates of a perspective view are tangents, x / w and y / w with w the distance along the view's axis, and ndc depth
-//! is near / w (reversed, infinite far plane): its relative error is that of f32 at any distance.
+//! Map coordinates of a perspective view are tangents, x / w and y / w with w the distance along the view's axis, and
+//! ndc depth is near / w (reversed, infinite far plane): its relative error is that of f32 at any distance.
 
 use glam::{DVec2, DVec3};
 
@@ -12,34 +13,34 @@ use crate::fit::map_rect::{MapRect, MapRectRequest};
 use crate::fit::reached::{self, Reached};
 use crate::fit::region::{HalfSpace, HalfSpaces, Relation};
 
-/// Most views of one local light.
+/// Is the largest number of views of one local light.
 pub(crate) const MAX_LOCAL_VIEWS: usize = 6;
 
-/// The nearest near plane, as a share of the light's reach. The rasteriser interpolates near / w in f32: across a triangle
-/// that starts at the near plane its error at distance w is w² / near · 2⁻²⁴, at the full reach 1024 · 2⁻²⁴ = 6·10⁻⁵ of it.
-/// Casters nearer to the light than this cast nothing.
+/// Is the distance of the nearest near plane, as a share of the light's reach. The rasteriser interpolates near / w in
+/// f32: across a triangle that starts at the near plane its error at distance w is w² / near · 2⁻²⁴, at the full reach
+/// 1024 · 2⁻²⁴ = 6·10⁻⁵ of it. Casters nearer to the light than this cast nothing.
 const NEAREST_SHARE: f64 = 1.0 / 1024.0;
 
-/// The rects of a local light, kept from frame to frame for their hysteresis.
+/// Holds the map rectangles of a local light, kept from frame to frame for their hysteresis.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LocalFit {
-    /// In tangents; none for a view that nothing can shadow.
+    /// Holds rectangles in tangents, `None` for a view in which nothing can cast a shadow.
     pub rects: [Option<MapRect>; MAX_LOCAL_VIEWS],
     held: [Option<MapRect>; MAX_LOCAL_VIEWS],
-    /// World distance of the near plane along every view's axis.
+    /// Is the world distance of the near plane along every view's axis.
     pub near: f64,
-    /// World distance beyond which nothing receives.
+    /// Is the world distance beyond which nothing receives.
     pub reach: f64,
 }
 
-/// A rectangle of tangents.
+/// Is a rectangle of tangents.
 struct Extent {
     min: DVec2,
     max: DVec2,
 }
 
 impl LocalFit {
-    /// The rects for this frame; `drawn` is filled with the indices of the casters of each view.
+    /// Returns the fit for this frame. Each list of `drawn` is filled with the indices of the casters of one view.
     pub fn fit(
         &self,
         input: &LocalInput<'_>,
@@ -73,7 +74,7 @@ impl LocalFit {
                     map_size: input.map_size,
                     margin_texels: input.margin_texels,
                     texel_floor: texel_floor(light, nearest),
-                    whole: input.caster_tangent,
+                    full_half_side: input.caster_tangent,
                 },
                 self.held[index].as_ref(),
             );
@@ -89,7 +90,8 @@ impl LocalFit {
                 next.held[index] = Some(rect);
             }
         }
-        // A power of two, so that it changes rarely; no farther than the reach, where nothing casts.
+        // The distance is rounded down to a power of two, so that it changes rarely, but not below `nearest`. It is no
+        // farther than the reach, beyond which nothing casts.
         next.near = next
             .near
             .clamp(nearest, reach)
@@ -101,14 +103,15 @@ impl LocalFit {
     }
 }
 
-/// One view's axes at the light's place in render space.
+/// Holds one view's axes at the light's position in render space.
 struct ViewFrame<'a> {
     axes: &'a LightAxes,
     light: DVec3,
 }
 
 impl ViewFrame<'_> {
-    /// The rectangle of tangents that both casters and receivers cover; none for nothing.
+    /// Returns the rectangle of tangents that both casters and receivers cover, or `None` if they share none. Where
+    /// lookups reach around their receiver, casters alone decide.
     fn needed(
         &self,
         input: &LocalInput<'_>,
@@ -136,11 +139,11 @@ impl ViewFrame<'_> {
         min.cmple(max).all().then_some((min, max))
     }
 
-    /// The pyramid over a rectangle of tangents, from `nearest` along the axis on.
+    /// Returns the pyramid over a rectangle of tangents, cut off at `nearest` along the axis.
     fn region(&self, min: DVec2, max: DVec2, nearest: f64) -> HalfSpaces {
         let (right, up, forward) = (self.axes.right(), self.axes.up(), -self.axes.toward_light());
         let mut region = HalfSpaces::default();
-        // The near side first: it sorts out half of everything.
+        // The near side comes first: it rejects half of all boxes.
         region.push(HalfSpace {
             normal: forward,
             offset: -forward.dot(self.light) - nearest,
@@ -160,7 +163,7 @@ impl ViewFrame<'_> {
         region
     }
 
-    /// What of the boxes lies in the region, in tangents; none for nothing.
+    /// Returns the rectangle of tangents that the boxes cover within the region, or `None` where no box is in it.
     fn extent<'b>(
         &self,
         region: &HalfSpaces,
@@ -181,7 +184,7 @@ impl ViewFrame<'_> {
         extent.min.cmple(extent.max).all().then_some(extent)
     }
 
-    /// The least distance along the axis of what of a box lies in the region; none where nothing does.
+    /// Returns the least distance along the axis of the part of a box within the region, or `None` where no part is.
     fn nearest_within(&self, region: &HalfSpaces, bounds: &Aabb) -> Option<f64> {
         match region.relation(bounds) {
             Relation::Outside => None,
@@ -197,7 +200,7 @@ impl ViewFrame<'_> {
         }
     }
 
-    /// The box's intervals on the view's axes, from the light.
+    /// Returns the box's intervals on the view's axes, measured from the light.
     fn span(&self, bounds: &Aabb) -> Span {
         let local = self.axes.light_box(bounds, -self.light);
         Span {
@@ -209,7 +212,7 @@ impl ViewFrame<'_> {
     }
 }
 
-/// A box's intervals across the view, and along it away from the light.
+/// Holds a box's intervals across the view, and along it away from the light.
 struct Span {
     min: DVec2,
     max: DVec2,
@@ -223,7 +226,7 @@ impl Extent {
         max: DVec2::NEG_INFINITY,
     };
 
-    /// Do all tangents of the box lie within these already?
+    /// Returns whether all tangents of the box are within these already.
     fn holds(&self, span: &Span) -> bool {
         let at = |across: DVec2| (across / span.nearest, across / span.farthest);
         let (low_near, low_far) = at(span.min);
@@ -234,8 +237,9 @@ impl Extent {
     }
 }
 
-/// Finest texel, as a tangent: four ulps of f32 at the light's render coordinates seen from the end of its reach, and at least
-/// four ulps of one, the tangent at a view's border. Close to the light texels may be finer than positions; at its reach not.
+/// Returns the finest texel, as a tangent: four ulps of f32 at the light's render coordinates seen from the end of its
+/// reach, and at least four ulps of one, the tangent at a view's border. Close to the light texels may be finer than
+/// positions; at the end of its reach they are not.
 fn texel_floor(light: DVec3, nearest: f64) -> f64 {
     let reach = nearest / NEAREST_SHARE;
     4.0 * f64::from(f32::EPSILON) * (light.abs().max_element() / reach).max(1.0)

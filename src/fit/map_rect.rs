@@ -1,46 +1,49 @@
-//! The rectangle of the map plane that one view covers: quantised extents, snapped to whole texels in absolute coordinates.
+//! Fits the rectangle of the map plane that one view covers: quantized extents, snapped to whole texels in absolute
+//! coordinates.
 
 use glam::DVec2;
 
 use crate::fit::LightBox;
 use crate::fit::size_step::{size_step_up, size_step_with_hysteresis};
 
-/// Steps into which a depth range is divided; its ends lie on whole steps, so that they rarely move.
+/// Is the number of steps into which a depth range is divided; its ends are on whole steps, so that they rarely move.
 const DEPTH_STEPS: f64 = 64.0;
 
-/// What one window must hold, and at which resolution. Units are the map plane's own: world units in light space for an
-/// orthographic view, tangents of angles for a perspective one.
+/// States what a map rectangle must hold, and at which resolution. Units are the map plane's own: world units in light
+/// space for an orthographic view, tangents of angles for a perspective one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MapRectRequest {
-    /// Least x and y to cover.
+    /// Is the least x and y to cover.
     pub min: DVec2,
-    /// Greatest x and y to cover.
+    /// Is the greatest x and y to cover.
     pub max: DVec2,
-    /// Texels per side of the map.
+    /// Counts the texels per side of the map.
     pub map_size: u32,
-    /// Texels kept free on every side, so that a filter's kernel stays inside.
+    /// Counts the texels kept free on every side, so that a filter's kernel stays inside.
     pub margin_texels: u32,
-    /// Finest texel that render space can tell apart at this place.
+    /// Is the finest texel that render space can resolve at this position.
     pub texel_floor: f64,
-    /// Half the side of a square around the plane's origin that holds all there can be, margins included; infinite for none.
-    /// Where a rung would be no finer, the window is that square, which never moves.
-    pub whole: f64,
+    /// Is half the side of a square around the plane's origin that holds everything that can ever be needed, margins
+    /// included; infinite if there is no such square. Where a quantized size step would make texels no finer than those
+    /// of the square, the square is used, which never moves.
+    pub full_half_side: f64,
 }
 
-/// A rectangle of whole texels in the plane of a map.
+/// Is a rectangle of whole texels in the plane of a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MapRect {
-    /// Least x and y: a whole number of texels from the plane's origin.
+    /// Is the least x and y: a whole number of texels from the plane's origin, except where the rectangle is the full
+    /// square of its request or too small to snap.
     pub min: DVec2,
-    /// Size of a texel along x and y.
+    /// Is the size of a texel along x and y.
     pub texel: DVec2,
-    /// Texels per side.
+    /// Counts the texels per side.
     pub map_size: u32,
 }
 
 impl MapRect {
-    /// The window for `request`. The `held` one stays wholly or in part as long as it serves, so that small motions of a
-    /// camera change nothing.
+    /// Returns the rectangle for `request`. The `held` one is kept, on each axis by itself, as long as it satisfies the
+    /// request, so that small motions of a camera change nothing.
     pub fn fit(request: &MapRectRequest, held: Option<&Self>) -> Self {
         let held = held.filter(|held| held.map_size == request.map_size);
         let (min_x, texel_x) = fit_axis(request, held, 0);
@@ -52,13 +55,13 @@ impl MapRect {
         }
     }
 
-    /// Greatest x and y.
+    /// Returns the greatest x and y.
     pub fn max(&self) -> DVec2 {
         self.min + self.texel * f64::from(self.map_size)
     }
 }
 
-/// Start and texel size along one axis.
+/// Returns start and texel size along one axis.
 fn fit_axis(request: &MapRectRequest, held: Option<&MapRect>, axis: usize) -> (f64, f64) {
     let (low, high) = (request.min[axis], request.max[axis]);
     let size = f64::from(request.map_size);
@@ -71,9 +74,9 @@ fn fit_axis(request: &MapRectRequest, held: Option<&MapRect>, axis: usize) -> (f
     }
     let texel_needed = ((high - low) / usable).max(request.texel_floor);
     let texel = size_step_with_hysteresis(texel_needed, held.map(|held| held.texel[axis]));
-    let whole_texel = 2.0 * request.whole / size;
-    if texel >= whole_texel {
-        return (-request.whole, whole_texel);
+    let full_texel = 2.0 * request.full_half_side / size;
+    if texel >= full_texel {
+        return (-request.full_half_side, full_texel);
     }
     if let Some(held) = held.filter(|held| held.texel[axis] == texel) {
         let start = held.min[axis];
@@ -87,19 +90,20 @@ fn fit_axis(request: &MapRectRequest, held: Option<&MapRect>, axis: usize) -> (f
     ((first - margin - spare) * texel, texel)
 }
 
-/// Far and near plane of an orthographic view, on whole steps of its range.
+/// Holds the far and near plane of an orthographic view, on whole steps of its range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DepthRange {
-    /// z of the far plane (ndc 0).
+    /// Is z of the far plane (ndc 0).
     pub far: f64,
-    /// z of the near plane (ndc 1); greater than `far`, since z grows toward the light.
+    /// Is z of the near plane (ndc 1); greater than `far`, since z grows toward the light.
     pub near: f64,
 }
 
 impl DepthRange {
-    /// A range that holds `far..near` and is at least `least` deep.
+    /// Returns a range that holds `far..near` and is at least `least` deep.
     pub fn fit(far: f64, near: f64, least: f64, held: Option<&Self>) -> Self {
-        // One step behind the deepest receiver, so that rounding never puts it behind the far plane, and two for snapping.
+        // The range has one step behind the deepest receiver, so that rounding never puts it behind the far plane, and
+        // two for snapping.
         let needed = (near - far).max(least) * DEPTH_STEPS / (DEPTH_STEPS - 4.0);
         let range = size_step_with_hysteresis(needed, held.map(Self::length));
         let step = range / DEPTH_STEPS;
@@ -117,13 +121,13 @@ impl DepthRange {
         }
     }
 
-    /// World units from the far to the near plane.
+    /// Returns the world units from the far to the near plane.
     pub fn length(&self) -> f64 {
         self.near - self.far
     }
 }
 
-/// The window and depth range of an orthographic view, in absolute light space.
+/// Holds the map rectangle and depth range of an orthographic view, in absolute light space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LightSpaceBounds {
     pub rect: MapRect,
@@ -131,12 +135,12 @@ pub(crate) struct LightSpaceBounds {
 }
 
 impl LightSpaceBounds {
-    /// Can geometry in `bounds` leave a mark in this map?
+    /// Returns whether geometry in `bounds` can cast into this map.
     pub fn holds_part_of(&self, bounds: &LightBox) -> bool {
         self.bounds().overlaps_xy(bounds) && bounds.max.z > self.depth.far
     }
 
-    /// The box that the view covers.
+    /// Returns the box that the view covers.
     pub fn bounds(&self) -> LightBox {
         LightBox {
             min: self.rect.min.extend(self.depth.far),
@@ -156,37 +160,38 @@ mod tests {
             map_size: 512,
             margin_texels: 3,
             texel_floor: 1e-6,
-            whole: f64::INFINITY,
+            full_half_side: f64::INFINITY,
         }
     }
 
-    fn assert_holds(window: &MapRect, request: &MapRectRequest) {
-        let margin = window.texel * f64::from(request.margin_texels);
-        assert!((window.min + margin).cmple(request.min).all());
-        assert!((window.max() - margin).cmpge(request.max).all());
+    fn assert_holds(rect: &MapRect, request: &MapRectRequest) {
+        let margin = rect.texel * f64::from(request.margin_texels);
+        assert!((rect.min + margin).cmple(request.min).all());
+        assert!((rect.max() - margin).cmpge(request.max).all());
     }
 
-    /// Wherever the required rectangle lies, the window holds it with its margin, starts on a whole texel, and its texel is at
-    /// most one rung (1.19 times) larger than asked.
+    /// Checks that, wherever the required rectangle is, the map rectangle holds it with its margin and starts on a
+    /// whole texel, and that its texel is at most one quantized size step (1.19 times) larger than requested.
     #[test]
-    fn windows_hold_what_they_must_and_little_more() {
+    fn rects_hold_what_they_must_and_are_at_most_one_size_step_larger() {
         for step in 0..2000 {
             let t = f64::from(step);
             let center = DVec2::new((t * 0.713).sin() * 1e5, (t * 0.317).cos() * 1e3);
             let half = DVec2::new(0.1 + t * 0.05, 3.0 + (t * 0.1).sin());
             let request = request(center - half, center + half);
-            let window = MapRect::fit(&request, None);
-            assert_holds(&window, &request);
-            let phase = window.min / window.texel;
+            let rect = MapRect::fit(&request, None);
+            assert_holds(&rect, &request);
+            let phase = rect.min / rect.texel;
             assert!((phase - phase.round()).abs().max_element() < 1e-4);
             let ideal = half * 2.0 / 505.0;
-            assert!((window.texel / ideal).max_element() <= 2.0_f64.powf(0.25) * (1.0 + 1e-9));
+            assert!((rect.texel / ideal).max_element() <= 2.0_f64.powf(0.25) * (1.0 + 1e-9));
         }
     }
 
-    /// A request that drifts less than the spare room changes nothing at all; one that leaves it moves by whole texels.
+    /// Checks that a request that drifts by less than the spare room changes nothing at all, and that one that leaves
+    /// it moves the rectangle by whole texels.
     #[test]
-    fn a_held_window_stays_until_it_must_move() {
+    fn a_held_rect_stays_until_it_must_move() {
         let first = request(DVec2::new(-4.0, -3.0), DVec2::new(4.3, 3.1));
         let held = MapRect::fit(&first, None);
         let nudge = DVec2::new(held.texel.x * 0.4, -held.texel.y * 0.3);
@@ -201,15 +206,15 @@ mod tests {
         assert!((texels - texels.round()).abs().max_element() < 1e-9);
     }
 
-    /// A window that would be as large as all there can be is all there can be.
+    /// Checks that a rectangle that would be as large as the full square is the full square.
     #[test]
-    fn a_large_window_is_the_whole() {
+    fn a_rect_that_would_be_as_large_as_the_full_square_is_the_full_square() {
         let mut request = request(DVec2::new(-0.9, -0.1), DVec2::new(0.95, 0.1));
-        request.whole = 0.97;
-        let window = MapRect::fit(&request, None);
-        assert!(window.min.x == -0.97 && (window.max().x - 0.97).abs() <= 4.0 * f64::EPSILON);
-        assert!(window.texel.y < window.texel.x * 0.25);
-        assert_holds(&window, &request);
+        request.full_half_side = 0.97;
+        let rect = MapRect::fit(&request, None);
+        assert!(rect.min.x == -0.97 && (rect.max().x - 0.97).abs() <= 4.0 * f64::EPSILON);
+        assert!(rect.texel.y < rect.texel.x * 0.25);
+        assert_holds(&rect, &request);
     }
 
     #[test]
@@ -232,9 +237,9 @@ mod tests {
         for map_size in [1, 2, 3, 7] {
             let mut request = request(DVec2::splat(2.5), DVec2::splat(2.5));
             request.map_size = map_size;
-            let window = MapRect::fit(&request, None);
-            assert!(window.texel.min_element() > 0.0 && window.min.is_finite());
-            assert!(window.min.max_element() < 2.5 && window.max().min_element() > 2.5);
+            let rect = MapRect::fit(&request, None);
+            assert!(rect.texel.min_element() > 0.0 && rect.min.is_finite());
+            assert!(rect.min.max_element() < 2.5 && rect.max().min_element() > 2.5);
         }
         let range = DepthRange::fit(3.0, 3.0, 1e-6, None);
         assert!(range.far < 3.0 && range.near >= 3.0 && range.length() > 0.0);

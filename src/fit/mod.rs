@@ -1,22 +1,22 @@
-//! Ground floor: where a light must look, as pure f64 mathematics that returns values and knows no wgpu.
+//! Determines what each light's views must cover, as pure f64 mathematics that returns values and does not use wgpu.
 //!
 //! ```text
 //! camera.rs       the engine's camera as half-spaces and depth along the view
 //! region.rs       exact vertices of (convex region ∩ box)
 //! axes.rs         world-fixed light axes, boxes in light space
-//! footprint.rs    what of a slice of the view a window covers
-//! size_step.rs    quantised sizes with hysteresis
+//! footprint.rs    which part of a slice of the view a map rectangle covers
+//! size_step.rs    quantized size steps with hysteresis
 //! map_rect.rs     the rectangle of a map plane that a view covers, snapped to whole texels
-//! spacing.rs      how finely f64 tells places apart, far from the world's origin
-//! split.rs        where one cascade ends and the next begins
+//! spacing.rs      how finely f64 distinguishes positions, far from the world's origin
+//! split.rs        the depths at which one cascade ends and the next begins
 //! stability.rs    what may change the extent of a cascade
-//! picture_corners.rs  the sphere around a slice of a camera's view
+//! image_corners.rs  the sphere around a slice of a camera's view
 //! visible.rs      what a camera sees of the receivers
-//! extruded_rect.rs  what reaches into the space over a map's rectangle
-//! directional.rs  all of it put together for a sun
+//! extruded_rect.rs  what reaches into the extruded map rectangle
+//! directional.rs  the complete fit of a directional light
 //! reached.rs      what a local light reaches
-//! local.rs        the same for the views of a spot or point light; local_input.rs: what it starts from
-//! view.rs         ShadowView: the value that the upper floors render and sample with
+//! local.rs        the complete fit of a spot or point light's views; local_input.rs: its input
+//! view.rs         ShadowView: the value that maps are rendered and sampled with
 //! ```
 
 mod axes;
@@ -24,10 +24,10 @@ mod camera;
 mod directional;
 mod extruded_rect;
 mod footprint;
+mod image_corners;
 mod local;
 mod local_input;
 mod map_rect;
-mod picture_corners;
 mod reached;
 mod region;
 mod size_step;

@@ -1,4 +1,4 @@
-//! What a local light reaches: found once a frame, then divided among its views.
+//! Finds what a local light reaches, once a frame; the result is then divided among its views.
 
 use glam::DVec3;
 
@@ -6,28 +6,28 @@ use crate::Aabb;
 use crate::fit::local_input::LocalInput;
 use crate::fit::region::Relation;
 
-/// The casters and receivers within a light's reach. Lists keep their memory from frame to frame.
+/// Holds the casters and receivers within a light's reach, in lists that are reused from frame to frame.
 #[derive(Debug, Default)]
 pub(crate) struct Reached {
-    /// Casters that can shadow something.
+    /// Holds the casters that can shadow something.
     pub casters: Vec<ReachedCaster>,
-    /// What of the receivers the light reaches.
+    /// Holds the parts of the receivers that the light reaches.
     pub receivers: Vec<Aabb>,
 }
 
-/// A caster that a light reaches.
+/// Is a caster that a light reaches.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ReachedCaster {
-    /// In the engine's list.
+    /// Is the caster's index in the engine's list.
     pub index: u32,
-    /// What of it lies within the box around the light's reach.
+    /// Bounds the part of it within the box around the light's reach.
     pub bounds: Aabb,
 }
 
 impl Reached {
-    /// Takes on what `input` brings, for a light at `light` in render space.
+    /// Fills the lists from `input`, for a light at `light` in render space.
     pub fn find(&mut self, input: &LocalInput<'_>, light: DVec3, reach: f64) {
-        // Outward, for the rounding of boxes to f32.
+        // The distance is rounded outward, since boxes are rounded to f32.
         let outward = reach * (1.0 + 1e-6) + light.abs().max_element() * 1e-6;
         let around = Aabb::new((light - outward).as_vec3(), (light + outward).as_vec3());
         let near = |bounds: &Aabb| {
@@ -48,7 +48,7 @@ impl Reached {
             .retain(|caster| can_shadow(&input.casters[caster.index as usize], &visible, light));
     }
 
-    /// Bounds of the receivers that count.
+    /// Returns the bounds of the receivers that count.
     fn visible_bounds(&self, input: &LocalInput<'_>) -> (DVec3, DVec3) {
         let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let everywhere = input.seen.iter().flat_map(|seen| {
@@ -74,7 +74,8 @@ impl Reached {
     }
 }
 
-/// How far the light matters: its range, or the farthest corner of anything where the range goes beyond.
+/// Returns the distance up to which the light matters: its range, or the farthest corner of any caster or receiver
+/// where the range goes beyond that.
 pub(crate) fn reach(input: &LocalInput<'_>, light: DVec3) -> f64 {
     let mut farthest: f64 = 0.0;
     for bounds in input.casters.iter().chain(input.receivers) {
@@ -94,14 +95,15 @@ fn intersection(a: &Aabb, b: &Aabb) -> Aabb {
     Aabb::new(a.min.max(b.min), a.max.min(b.max))
 }
 
-/// Squared distance of a point from a box; 0 inside.
+/// Returns the squared distance of a point from a box; 0 inside.
 fn distance_squared(bounds: &Aabb, point: DVec3) -> f64 {
     let nearest = point.clamp(bounds.min.as_dvec3(), bounds.max.as_dvec3());
     nearest.distance_squared(point)
 }
 
-/// Can a shadow of `caster` fall on anything in `visible`? Shadows lead away from the light: on an axis on which the light lies
-/// to one side of the caster, some receiver must lie beyond the caster's near side. The flat wall of a room fails this.
+/// Returns whether a shadow of `caster` can fall on anything in `visible`. Shadows lead away from the light: on an axis
+/// on which the light is to one side of the caster, some receiver must be beyond the caster's near side. The flat wall
+/// of a room fails this.
 fn can_shadow(caster: &Aabb, visible: &(DVec3, DVec3), light: DVec3) -> bool {
     let (low, high) = (caster.min.as_dvec3(), caster.max.as_dvec3());
     !caster.is_empty()

@@ -1,13 +1,14 @@
-//! Exact vertices of a convex region cut by a box.
+//! Computes the exact vertices of a convex region cut by a box.
 //!
-//! The hull of (region ∩ box) is spanned by the box's edges inside the region and the region's edges inside the box. Each is a
-//! line clipped by half-spaces: no polygon lists, no allocation, and a region may be unbounded (an infinite far plane).
+//! The hull of (region ∩ box) is spanned by the box's edges inside the region and the region's edges inside the box.
+//! Each is a line clipped by half-spaces: no polygon lists, no allocation, and a region may be unbounded (an infinite
+//! far plane).
 
 use glam::DVec3;
 
 use crate::Aabb;
 
-/// Points with `normal · p + offset ≥ 0`; `normal` has unit length, so the left side is a distance.
+/// Is the set of points with `normal · p + offset ≥ 0`; `normal` has unit length, so the left side is a distance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct HalfSpace {
     pub normal: DVec3,
@@ -20,18 +21,19 @@ impl HalfSpace {
     }
 }
 
-/// Six sides of a box or of a camera's clip volume and its distance limit, with either the two ends of a slice and the four
-/// sides of a window, or the five sides of a local light's view.
+/// Is the largest number of half-spaces of a region: the six sides of a box, or of a camera's clip volume, and its
+/// distance limit, with either the two ends of a slice and the four sides of a map rectangle, or the five sides of a
+/// local light's view.
 const CAPACITY: usize = 13;
 
-/// An intersection of at most [`CAPACITY`] half-spaces. None at all is all of space.
+/// Is an intersection of at most [`CAPACITY`] half-spaces. An empty list is all of space.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct HalfSpaces {
     planes: [HalfSpace; CAPACITY],
     count: usize,
 }
 
-/// How a box lies to a region.
+/// Tells whether a box is outside a region, inside it or across its boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Relation {
     Outside,
@@ -39,7 +41,7 @@ pub(crate) enum Relation {
     Across,
 }
 
-/// A line `point + t * direction` limited to `t` in `[from, to]`.
+/// Is a line `point + t * direction` limited to `t` in `[from, to]`.
 #[derive(Clone, Copy)]
 struct Segment {
     point: DVec3,
@@ -49,7 +51,8 @@ struct Segment {
 }
 
 impl Segment {
-    /// Keeps the part inside `plane`, or returns false. `slack` is a distance that forgives rounding.
+    /// Keeps the part inside `plane` and returns true, or returns false if there is no such part. `slack` is a distance
+    /// by which rounding is forgiven.
     fn clip(&mut self, plane: &HalfSpace, slack: f64) -> bool {
         let rate = plane.normal.dot(self.direction);
         let distance = plane.distance(self.point) + slack;
@@ -65,7 +68,7 @@ impl Segment {
         self.from <= self.to
     }
 
-    /// Keeps the part inside the box.
+    /// Keeps the part inside the box and returns true, or returns false if there is no such part.
     fn clip_to_box(&mut self, min: DVec3, max: DVec3, slack: f64) -> bool {
         (0..3).all(|axis| {
             let mut normal = DVec3::ZERO;
@@ -110,7 +113,8 @@ impl HalfSpaces {
         &self.planes[..self.count]
     }
 
-    /// How `bounds` (not empty) lies to the region; a box near an edge of it may count as across though it lies outside.
+    /// Returns how `bounds` (not empty) relates to the region. A box near an edge of the region may count as across
+    /// although it is outside.
     pub fn relation(&self, bounds: &Aabb) -> Relation {
         let center = (bounds.min.as_dvec3() + bounds.max.as_dvec3()) * 0.5;
         let half = (bounds.max.as_dvec3() - bounds.min.as_dvec3()) * 0.5;
@@ -128,8 +132,8 @@ impl HalfSpaces {
         relation
     }
 
-    /// Calls `visit` with points whose convex hull is the region's intersection with `bounds` (never fewer; duplicates are
-    /// possible). No call for an empty intersection.
+    /// Calls `visit` with points whose convex hull is the region's intersection with `bounds` (never fewer; duplicates
+    /// are possible). An empty intersection makes no call.
     pub fn visit_vertices(&self, bounds: &Aabb, mut visit: impl FnMut(DVec3)) {
         if bounds.is_empty() {
             return;
@@ -143,9 +147,9 @@ impl HalfSpaces {
 
     fn visit_cut(&self, bounds: &Aabb, mut visit: impl FnMut(DVec3)) {
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
-        // A few ulps of the largest coordinate: an edge that lies in a plane of the region must not be lost to rounding.
+        // This is a few ulps of the largest coordinate: an edge in a plane of the region must not be lost to rounding.
         let slack = 16.0 * f64::EPSILON * min.abs().max(max.abs()).max_element();
-        // Clamped, so that a flat box yields points that are exactly as flat.
+        // Points are clamped, so that a flat box yields points that are exactly as flat.
         let mut visit_segment = |segment: Segment| {
             visit((segment.point + segment.direction * segment.from).clamp(min, max));
             visit((segment.point + segment.direction * segment.to).clamp(min, max));
@@ -188,7 +192,7 @@ impl HalfSpaces {
     }
 }
 
-/// The line in which two planes meet; none where they are parallel to rounding.
+/// Returns the line in which two planes meet, or `None` where they are parallel to rounding.
 fn meeting_line(first: &HalfSpace, second: &HalfSpace) -> Option<Segment> {
     let direction = first.normal.cross(second.normal);
     let length_squared = direction.length_squared();
@@ -246,7 +250,7 @@ mod tests {
         }
         let bounds = Aabb::new(Vec3::splat(-10.0), Vec3::splat(10.0));
         let (min, max) = hull_box(&region, &bounds).unwrap();
-        // the slack of the clip: 16 ulps of the box's largest coordinate, on each of three axes
+        // The slack of the clip is 16 ulps of the box's largest coordinate, on each of three axes.
         let tolerance = 3.0 * 16.0 * f64::EPSILON * 10.0;
         assert!((min + DVec3::ONE).length() < tolerance);
         assert!((max - DVec3::splat(2.0)).length() < tolerance);

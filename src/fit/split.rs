@@ -1,35 +1,44 @@
-//! Where along the view one cascade ends and the next begins.
+//! Divides the depth along the view among cascades.
 
 use crate::ShadowError;
 use crate::check::in_range;
 
-/// How the covered depth is divided among the cascades of a directional light.
+/// Selects how the covered depth is divided among the cascades of a directional light.
+/// [`DirectionalShadowDescriptor`](crate::DirectionalShadowDescriptor) defaults to `Logarithmic`.
 ///
-/// Depths run from the nearest visible receiver (not the camera's near plane) to the farthest one or the camera's distance
-/// limit. Sources: Engel 2006 (*Cascaded Shadow Maps*), Zhang et al. 2006 (*Parallel-Split Shadow Maps*, GPU Gems 3 ch. 10).
+/// Depths are along the camera's view, in world units. They run from the nearest visible receiver (not the camera's
+/// near plane) to the farthest one or the camera's distance limit; under
+/// [`Stability::Rotation`](crate::Stability::Rotation) they run from the camera's near plane to its far plane or
+/// distance limit. A cascade that is too long for its map shows coarse texels at its near end. Numbers out of range
+/// make [`DirectionalShadow::new`](crate::DirectionalShadow::new) return [`ShadowError::OutOfRange`].
+///
+/// Sources: Engel 2006 (*Cascaded Shadow Maps*), Zhang et al. 2006 (*Parallel-Split Shadow Maps*, GPU Gems 3 ch. 10).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum CascadeSplit {
-    /// Equal depths: wastes texels near the camera.
+    /// Divides into equal depths, which gives too few texels per pixel near the camera and more than needed far from
+    /// it.
     Uniform,
-    /// Equal ratios: equal texels per pixel everywhere. Right whenever the near end is a receiver, and the default.
+    /// Divides in equal ratios, which gives equal texels per pixel everywhere. This is right whenever the near end is a
+    /// receiver.
     Logarithmic,
-    /// `lambda` (0..=1) of the way from uniform to logarithmic: for scenes with a single object close to the camera.
+    /// Divides at `lambda` (0..=1) of the way from uniform to logarithmic, for scenes with a single object close to the
+    /// camera.
     Practical {
-        /// 0 is uniform, 1 logarithmic.
+        /// Is 0 for uniform and 1 for logarithmic.
         lambda: f32,
     },
-    /// Depths along the view, in world units and growing, at which all cascades but the last end; as many as there are
-    /// cascades but one, the rest is not read. For scenes with a known break, such as a cockpit before a landscape. A cascade
-    /// that ends before the nearest receiver stays empty.
+    /// Divides at given depths, for scenes with a known break, such as a cockpit before a landscape. A cascade that
+    /// ends before the nearest visible receiver stays empty.
     Explicit {
-        /// Ends of the first cascades.
+        /// Holds the depths along the view, in world units, finite and growing, at which all cascades but the last end.
+        /// As many are read as there are cascades but one; the rest is ignored.
         ends: [f32; 7],
     },
 }
 
 impl CascadeSplit {
-    /// Depth at which cascade `index` of `count` begins (`index == count` is the far end).
+    /// Returns the depth at which cascade `index` of `count` begins (`index == count` is the far end).
     pub(crate) fn depth(self, index: usize, count: usize, near: f64, far: f64) -> f64 {
         if index == 0 {
             return near;
@@ -56,7 +65,7 @@ impl CascadeSplit {
         }
     }
 
-    /// Checks its numbers for a light of `cascades` cascades.
+    /// Checks the numbers for a light of `cascades` cascades.
     pub(crate) fn check(self, field: &'static str, cascades: u32) -> Result<(), ShadowError> {
         let lambda = match self {
             Self::Practical { lambda } => lambda,

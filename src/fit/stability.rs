@@ -1,17 +1,19 @@
-//! What may change a cascade's extent: what is seen, or nothing at all.
+//! Selects whether a cascade's extent may follow what is seen, or does not change at all.
 
-/// How a cascade's extent follows the camera. Edges of shadows stand still in the world either way while the extent does not
-/// change: windows move by whole texels.
+/// Selects how a cascade's extent follows the camera. In both cases edges of shadows keep their positions in the world
+/// while the extent does not change: map rectangles move by whole texels. The default is `Rungs`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stability {
-    /// As tight as the receivers and casters in view allow, in steps of 19 %. A step is seen as edges that sharpen or blur a
-    /// little at once; a camera that walks and turns through a town takes one in a few frames of a hundred.
+    /// Makes the extent as tight as the receivers and casters in view allow, in quantized size steps of 19 %. A step is
+    /// seen as edges that sharpen or blur a little at once; a camera that walks and turns through a town causes one in
+    /// a few frames of a hundred.
     #[default]
     Rungs,
-    /// A sphere around each slice of the camera's own volume, receivers or none: the extent depends on the projection and the
-    /// distance limit alone, so that no motion of the camera changes it. (But texels are never finer than four ulps of the
-    /// largest render coordinate in the window, 1 mm at 2 km: far out, let `origin` follow the camera.) A quarter as many
-    /// texels fall on what is seen. Needs a far plane or a `max_distance`.
+    /// Uses a sphere around each slice of the camera's own volume, whether it has receivers or not: the extent depends
+    /// on the projection and the distance limit alone, so that no motion of the camera changes it. (But texels are
+    /// never finer than four ulps of the largest render coordinate within the map rectangle, 1 mm at 2 km: far out, let
+    /// `origin` follow the camera.) A quarter as many texels fall on what is seen. It needs a far plane or a
+    /// `max_distance`; without either, recording returns [`ShadowError::OutOfRange`](crate::ShadowError::OutOfRange).
     Rotation,
 }

@@ -1,4 +1,4 @@
-//! `ShadowView`: one depth render of a light, as a value.
+//! Defines `ShadowView`: one depth render of a light, as a value.
 
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, Mat4, Vec2, Vec3};
 
@@ -6,24 +6,26 @@ use crate::ShadowError;
 use crate::fit::map_rect::{LightSpaceBounds, MapRect};
 use crate::fit::{LightAxes, LocalFit};
 
-/// One depth render: a cascade of a sun, the map of a spot, a face of a point light.
+/// Describes one depth render: a cascade of a directional light, the map of a spot light, a face of a point light.
 ///
-/// All matrices start from coordinates relative to [`ShadowView::anchor_render`], a point of render space inside the view (the
-/// light itself where the projection is perspective). Subtracting it first keeps f32 exact to the texel far from the origin.
+/// All matrices start from coordinates relative to [`ShadowView::anchor_render`], a point of render space inside the
+/// view (the light itself where the projection is perspective). Subtracting it first keeps f32 exact to the texel far
+/// from the origin. Lengths are in world units, and depths are reversed: near 1, far 0. A view is valid for the
+/// `origin` of the frame in which it was made; under another one its shadows are displaced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadowView {
     layer: u32,
     map_size: u32,
     anchor_render: Vec3,
-    /// Reversed depth: near 1, far 0.
+    /// Has reversed depth: near 1, far 0.
     clip_from_anchor: DMat4,
     placement: ViewPlacement,
-    /// Largest f32 render coordinate that positions inside the view have.
+    /// Is the largest f32 render coordinate that positions inside the view have.
     render_reach: f64,
 }
 
-/// What a view looks at, in absolute world terms: two views with one placement see the same picture of the same world,
-/// wherever render space begins.
+/// Describes what a view covers, in absolute world terms: two views with equal placements render the same map of the
+/// same world, wherever render space begins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum ViewPlacement {
     Orthographic {
@@ -33,19 +35,19 @@ pub(crate) enum ViewPlacement {
     Perspective {
         axes: LightAxes,
         position_world: DVec3,
-        /// In tangents.
+        /// Is in tangents.
         rect: MapRect,
-        /// World distance of the near plane.
+        /// Is the world distance of the near plane.
         near: f64,
-        /// World distance beyond which nothing receives.
+        /// Is the world distance beyond which nothing receives.
         reach: f64,
-        /// Cosine of the half-angle of a cone; -2 for none.
+        /// Is the cosine of the half-angle of a cone; -2 if there is no cone.
         cone_cosine: f64,
     },
 }
 
 impl ViewPlacement {
-    /// World distance of the view's farthest corner, or of a local light, from the world's origin.
+    /// Returns the world distance of the view's farthest corner, or of a local light, from the world's origin.
     fn reach_from_origin(&self) -> f64 {
         match self {
             Self::Orthographic { bounds, .. } => bounds.bounds().reach(),
@@ -55,7 +57,7 @@ impl ViewPlacement {
 }
 
 impl ShadowView {
-    /// The view of an orthographic bounds, for an engine whose render space begins at `origin`.
+    /// Returns the orthographic view over light-space bounds, for an engine whose render space begins at `origin`.
     pub(crate) fn orthographic(
         axes: &LightAxes,
         bounds: &LightSpaceBounds,
@@ -93,7 +95,7 @@ impl ShadowView {
         }
     }
 
-    /// The view of a local light through a bounds of tangents.
+    /// Returns the view of a local light through a rectangle of tangents.
     pub(crate) fn perspective(
         axes: &LightAxes,
         position_world: DVec3,
@@ -133,7 +135,7 @@ impl ShadowView {
         }
     }
 
-    /// The same view of the same world, for a render space that begins at `origin`.
+    /// Returns the same view of the same world, for a render space that begins at `origin`.
     pub(crate) fn rebased(&self, origin: DVec3) -> Self {
         match &self.placement {
             ViewPlacement::Orthographic { axes, bounds } => {
@@ -159,8 +161,8 @@ impl ShadowView {
         self.render_reach
     }
 
-    /// Returns the same view over depths that were computed from render coordinates up to `render_reach`, perhaps under another
-    /// origin: whatever is compared with them must allow for their rounding as well.
+    /// Returns the same view over depths that were computed from render coordinates up to `render_reach`, perhaps under
+    /// another origin: whatever is compared with them must allow for their rounding as well.
     pub(crate) const fn over_depths_from(self, render_reach: f64) -> Self {
         Self {
             render_reach: self.render_reach.max(render_reach),
@@ -168,9 +170,10 @@ impl ShadowView {
         }
     }
 
-    /// Returns whether depths of this view that were computed from render coordinates up to `render_reach` are as good as new
-    /// ones: their rounding is at most twice that of new ones, or at most [`KEPT_ROUNDING_TEXELS`]. So a map is kept while the
-    /// origin moves with a camera, and drawn again, finer, before a rounding from far away can be seen.
+    /// Returns whether depths of this view that were computed from render coordinates up to `render_reach` are as good
+    /// as new ones: their rounding is at most twice that of new ones, or at most [`KEPT_ROUNDING_TEXELS`]. So a map is
+    /// kept while the origin moves with a camera, and drawn again, finer, before the rounding of distant coordinates
+    /// becomes visible.
     pub(crate) fn may_keep_depths_from(&self, render_reach: f64) -> bool {
         let finest_texel_world = match &self.placement {
             ViewPlacement::Orthographic { bounds, .. } => bounds.rect.texel.min_element(),
@@ -181,7 +184,8 @@ impl ShadowView {
             || rounding_world <= KEPT_ROUNDING_TEXELS * finest_texel_world
     }
 
-    /// The view, if its matrices and its place can be expressed in f32. Whether f64 suffices for the place is the fit's to say.
+    /// Returns the view if its matrices and its position can be expressed in f32. The fit has checked whether f64
+    /// suffices for the position.
     pub(crate) fn checked(self) -> Result<Self, ShadowError> {
         // The square must fit as well: matrices hold reciprocals and products of these.
         let largest = f64::from(f32::MAX).sqrt();
@@ -204,34 +208,35 @@ impl ShadowView {
         }
     }
 
-    /// Layer of the light's depth texture that this view is rendered into.
+    /// Returns the layer of the light's depth texture that this view is rendered into.
     pub const fn layer(&self) -> u32 {
         self.layer
     }
 
-    /// Texels per side of the map.
+    /// Returns the number of texels per side of the map.
     pub const fn map_size(&self) -> u32 {
         self.map_size
     }
 
-    /// The point of render space that the matrices' coordinates are relative to.
+    /// Returns the point of render space that the matrices' coordinates are relative to.
     pub const fn anchor_render(&self) -> Vec3 {
         self.anchor_render
     }
 
-    /// Clip space (z in [0, 1], near 1, far 0) from `position_render - anchor_render`.
+    /// Returns the matrix to clip space (z in [0, 1], near 1, far 0) from `position_render - anchor_render`.
     pub fn clip_from_anchor(&self) -> Mat4 {
         self.clip_from_anchor.as_mat4()
     }
 
-    /// Clip space from render space in one matrix. Prefer [`ShadowView::clip_from_anchor`] where coordinates are large.
+    /// Returns the matrix to clip space from render space. Prefer [`ShadowView::clip_from_anchor`] where coordinates
+    /// are large: this one shifts shadows by the rounding of large f32 coordinates.
     pub fn clip_from_render(&self) -> Mat4 {
         let shift = DMat4::from_translation(-self.anchor_render.as_dvec3());
         (self.clip_from_anchor * shift).as_mat4()
     }
 
-    /// World size of a texel along the map's x and y: constant for an orthographic view, at the end of the light's reach for a
-    /// perspective one, where it is largest.
+    /// Returns the world size of a texel along the map's x and y: constant for an orthographic view, at the end of the
+    /// light's reach for a perspective one, where it is largest.
     pub fn texel_size_world(&self) -> Vec2 {
         match &self.placement {
             ViewPlacement::Orthographic { bounds, .. } => bounds.rect.texel.as_vec2(),
@@ -239,7 +244,7 @@ impl ShadowView {
         }
     }
 
-    /// World distance from the near plane to the far plane, or to the end of the light's reach.
+    /// Returns the world distance from the near plane to the far plane, or to the end of the light's reach.
     pub fn depth_range_world(&self) -> f32 {
         match &self.placement {
             ViewPlacement::Orthographic { bounds, .. } => bounds.depth.length() as f32,
@@ -247,8 +252,8 @@ impl ShadowView {
         }
     }
 
-    /// Radius of a penumbra in texels per difference of ndc depth between occluder and receiver, for a directional light of
-    /// `light_size` radians across or a local one of `light_size` world units in radius.
+    /// Returns the radius of a penumbra in texels per difference of ndc depth between occluder and receiver, for a
+    /// directional light of `light_size` radians across or a local one of `light_size` world units in radius.
     pub(crate) fn penumbra_texels(&self, light_size: f64) -> DVec2 {
         match &self.placement {
             ViewPlacement::Orthographic { bounds, .. } => {
@@ -258,14 +263,14 @@ impl ShadowView {
         }
     }
 
-    /// Where the first texel lies in a grid of such texels that is fixed in the world (for a local light around it), modulo
-    /// 65536: x in the low half, y, which grows downward, in the high.
+    /// Returns the position of the first texel in a grid of such texels that is fixed in the world (for a local light
+    /// around it), modulo 65536: x in the low half, y, which grows downward, in the high.
     pub(crate) fn world_grid(&self) -> u32 {
-        let plane = match &self.placement {
+        let rect = match &self.placement {
             ViewPlacement::Orthographic { bounds, .. } => &bounds.rect,
             ViewPlacement::Perspective { rect, .. } => rect,
         };
-        let first = DVec2::new(plane.min.x, -plane.max().y) / plane.texel;
+        let first = DVec2::new(rect.min.x, -rect.max().y) / rect.texel;
         let wrapped = first.round().rem_euclid(DVec2::splat(65_536.0));
         wrapped.x as u32 | (wrapped.y as u32) << 16
     }
@@ -274,7 +279,8 @@ impl ShadowView {
         &self.placement
     }
 
-    /// Texel coordinates (origin top left, centres at halves), ndc depth and w, from anchor-relative coordinates.
+    /// Returns the matrix to texel coordinates (origin top left, centres at halves), ndc depth and w, from
+    /// anchor-relative coordinates.
     pub(crate) fn texel_from_anchor(&self) -> DMat4 {
         let half = f64::from(self.map_size) * 0.5;
         let texel_from_clip = DMat4::from_cols(
@@ -286,7 +292,8 @@ impl ShadowView {
         texel_from_clip * self.clip_from_anchor
     }
 
-    /// Toward the light along the view's axis, and whether the light is local (1) or directional (0).
+    /// Returns the direction toward the light along the view's axis, and in w whether the light is local (1) or
+    /// directional (0).
     pub(crate) fn light_axis(&self) -> DVec4 {
         match &self.placement {
             ViewPlacement::Orthographic { axes, .. } => axes.toward_light().extend(0.0),
@@ -294,7 +301,7 @@ impl ShadowView {
         }
     }
 
-    /// World distance beyond which a local light does not reach; infinite for a directional one.
+    /// Returns the world distance beyond which a local light does not reach; infinite for a directional one.
     pub(crate) fn reach_world(&self) -> f64 {
         match &self.placement {
             ViewPlacement::Orthographic { .. } => f64::INFINITY,
@@ -302,7 +309,7 @@ impl ShadowView {
         }
     }
 
-    /// Cosine of the half-angle of a cone; -2 for none.
+    /// Returns the cosine of the half-angle of a cone; -2 if there is no cone.
     pub(crate) fn cone_cosine(&self) -> f64 {
         match &self.placement {
             ViewPlacement::Orthographic { .. } => -2.0,
@@ -310,9 +317,10 @@ impl ShadowView {
         }
     }
 
-    /// Rounding error of a depth comparison as ndc depth, absolute and relative to the depth: one ulp (2u) for storing and
-    /// comparing and `4u` for the transform. Orthographic depths err relative to their range; perspective ones relative to
-    /// themselves, but for the rasteriser's interpolation, which errs by the largest depth of a triangle.
+    /// Returns the rounding error of a depth comparison as ndc depth, absolute and relative to the depth: one ulp (2u)
+    /// for storing and comparing and `4u` for the transform. Orthographic depths err relative to their range;
+    /// perspective ones relative to themselves, but for the rasteriser's interpolation, which errs by the largest depth
+    /// of a triangle.
     pub(crate) fn depth_error_ndc(&self) -> (f64, f64) {
         match &self.placement {
             ViewPlacement::Orthographic { .. } => (6.0 * UNIT_ROUNDOFF, 0.0),
@@ -320,37 +328,39 @@ impl ShadowView {
         }
     }
 
-    /// Worst rounding error of a depth comparison in world units: what [`ShadowView::depth_error_ndc`] comes to.
+    /// Returns the worst rounding error of a depth comparison in world units: what [`ShadowView::depth_error_ndc`]
+    /// comes to.
     pub(crate) fn depth_error_world(&self) -> f64 {
         let (absolute, relative) = self.depth_error_ndc();
         match &self.placement {
             ViewPlacement::Orthographic { bounds, .. } => absolute * bounds.depth.length(),
-            // depth = near / w, so a depth error e is w² / near · e of distance.
+            // Since depth = near / w, a depth error e is w² / near · e of distance.
             ViewPlacement::Perspective { near, reach, .. } => {
                 reach * reach / near * absolute + reach * relative
             }
         }
     }
 
-    /// Rounding error of the render coordinates that casters and receivers start from, in world units: `4u` of the largest.
+    /// Returns the rounding error of the render coordinates that casters and receivers start from, in world units: `4u`
+    /// of the largest.
     pub(crate) fn position_error_world(&self) -> f64 {
         position_error_world(self.render_reach)
     }
 
-    /// Rounding error of a lookup's arithmetic across the map, in texels: `6uN`.
+    /// Returns the rounding error of a lookup's arithmetic across the map, in texels: `6uN`.
     pub(crate) fn lateral_error_texels(&self) -> f64 {
         6.0 * UNIT_ROUNDOFF * f64::from(self.map_size)
     }
 }
 
-/// Rounding, in texels, that kept depths may have whatever new ones would have: the offset along the normal that allows for it
-/// is then far below the residual offset of a tenth of a texel.
+/// Is the rounding, in texels, that kept depths may have whatever new ones would have: the offset along the normal that
+/// allows for it is then far below the residual offset of a tenth of a texel.
 const KEPT_ROUNDING_TEXELS: f64 = 1.0 / 64.0;
 
-/// Rounding error in world units of coordinates up to `render_reach`: `4u` of it.
+/// Returns the rounding error in world units of coordinates up to `render_reach`: `4u` of it.
 fn position_error_world(render_reach: f64) -> f64 {
     4.0 * UNIT_ROUNDOFF * render_reach
 }
 
-/// u of f32: half an ulp of one.
+/// Is u of f32: half an ulp of one.
 const UNIT_ROUNDOFF: f64 = f32::EPSILON as f64 * 0.5;

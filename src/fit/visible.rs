@@ -1,4 +1,4 @@
-//! What a camera sees of the receivers: found once a frame, then divided among the cascades.
+//! Finds what each camera sees of the receivers, once a frame; the result is then divided among the cascades.
 
 use glam::DVec3;
 
@@ -7,20 +7,20 @@ use crate::fit::axes::{LightAxes, LightBox};
 use crate::fit::camera::CameraFrustum;
 use crate::fit::region::Relation;
 
-/// A receiver of which one of the cameras sees something.
+/// Is a receiver of which one of the cameras sees a part.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Seen {
-    /// Which of the frame's cameras sees it.
+    /// Is the index of the frame's camera that sees it.
     camera: usize,
     bounds: Aabb,
-    /// All of it lies in the camera's volume.
+    /// States that all of it is in the camera's volume.
     wholly: bool,
-    /// Depths along the view of the part that is seen.
+    /// Is the depth along the view at which the part that is seen begins; the next field is the depth at which it ends.
     depth_near: f64,
     depth_far: f64,
 }
 
-/// Bounds of all that is seen, in render space and in depth along the view.
+/// Holds the bounds of all that is seen, in render space and in depth along the view.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SeenBounds {
     pub render_min: DVec3,
@@ -37,7 +37,7 @@ impl SeenBounds {
         depth_far: f64::NEG_INFINITY,
     };
 
-    /// Returns the bounds of all of some boxes, at no depth in particular.
+    /// Returns the bounds of some boxes as a whole, with no depths along a view.
     pub fn of_boxes<'a>(boxes: impl IntoIterator<Item = &'a Aabb>) -> Self {
         let mut all = Self::NOTHING;
         for bounds in boxes.into_iter().filter(|bounds| !bounds.is_empty()) {
@@ -55,7 +55,8 @@ impl SeenBounds {
     }
 }
 
-/// Fills `seen` with the receivers that each of the cameras sees something of; returns the bounds of what they see together.
+/// Fills `seen` with the receivers that each of the cameras sees a part of, and returns the bounds of what they see
+/// together.
 pub(crate) fn find(
     cameras: &[CameraFrustum],
     receivers: &[Aabb],
@@ -113,7 +114,7 @@ fn find_through(
     }
 }
 
-/// Returns the light-space box of what the camera at `index` sees between two depths; empty for nothing.
+/// Returns the light-space box of what the camera at `index` sees between two depths; it is empty if that is nothing.
 pub(crate) fn light_box_between(
     (index, camera): (usize, &CameraFrustum),
     seen: &[Seen],

@@ -1,27 +1,31 @@
-//! How a depth map stores its depths.
+//! Defines how a depth map stores its depths.
 
-/// Format of a depth map. All depths are reversed: near 1, far 0.
+/// Selects the format of a depth map. All depths are reversed: near 1, far 0.
+///
+/// The pipelines of casters must be made for the format
+/// ([`CasterPipelineDescriptor::depth_formats`](crate::CasterPipelineDescriptor::depth_formats)); a light whose format
+/// a caster lacks returns [`ShadowError::CasterFormat`](crate::ShadowError::CasterFormat) when it is recorded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum DepthFormat {
-    /// 32-bit floats, 4 bytes a texel: an error of a few ulps, at any range.
+    /// Stores 32-bit floats, 4 bytes a texel, with an error of a few ulps at any range. This is the default.
     #[default]
     Float32,
-    /// 16-bit steps, 2 bytes a texel, for directional lights alone. A step is 1/65535 of the depth range (100 m: 1.5 mm,
-    /// 1 km: 15 mm) and adds so much to the bias, and twice that to the gap that it can leave
-    /// ([`ViewReport::worst_gap_world`](crate::ViewReport::worst_gap_world)). It goes unseen while it is below a quarter of a
-    /// texel, at ranges under some 16 000 texel sizes; beyond, contacts lose their shadow first.
+    /// Stores 16-bit steps, 2 bytes a texel, for directional lights alone. A step is 1/65535 of the depth range (100 m:
+    /// 1.5 mm, 1 km: 15 mm). The bias grows by one step, and the gap that it can leave by two
+    /// ([`ViewReport::worst_gap_world`](crate::ViewReport::worst_gap_world)). The step is invisible while it is below a
+    /// quarter of a texel, at ranges under some 16 000 texel sizes; beyond that, shadows first go missing at contacts.
     ///
-    /// Local lights keep 32 bits: the step of a perspective depth grows with the square of the distance, to metres at the
-    /// far end of a lamp's reach.
+    /// Local lights keep 32 bits: the step of a perspective depth grows with the square of the distance, to metres at
+    /// the far end of a lamp's reach.
     Unorm16,
 }
 
 impl DepthFormat {
-    /// All formats, in the order of [`DepthFormat::index`].
+    /// Lists all formats, in the order of [`DepthFormat::index`].
     pub(crate) const ALL: [Self; 2] = [Self::Float32, Self::Unorm16];
 
-    /// The format of the texture.
+    /// Returns the format of the texture.
     pub const fn texture_format(self) -> wgpu::TextureFormat {
         match self {
             Self::Float32 => wgpu::TextureFormat::Depth32Float,
@@ -29,7 +33,7 @@ impl DepthFormat {
         }
     }
 
-    /// Device memory of a texel.
+    /// Returns the device memory of a texel in bytes.
     pub(crate) const fn bytes_per_texel(self) -> u64 {
         match self {
             Self::Float32 => 4,
@@ -37,8 +41,8 @@ impl DepthFormat {
         }
     }
 
-    /// What storing a depth may move it by, in ndc, beyond the ulps of f32: a whole step, since drivers need not round to the
-    /// nearest.
+    /// Returns how far storing a depth may move it, in ndc, beyond the ulps of f32: a whole step, since drivers need
+    /// not round to the nearest.
     pub(crate) const fn step_ndc(self) -> f64 {
         match self {
             Self::Float32 => 0.0,

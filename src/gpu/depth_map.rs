@@ -1,9 +1,9 @@
-//! The depth texture that a light owns: one layer per view.
+//! Defines the depth texture that a light owns, with one layer per view.
 
 use crate::gpu::{DepthFormat, capture_device_errors};
 use crate::{DeviceRefusal, ShadowError};
 
-/// A layered depth texture, with one attachment per layer and one view of them all.
+/// Holds a layered depth texture, with one attachment per layer and one texture view of them all.
 #[derive(Debug)]
 pub(crate) struct DepthMap {
     layers: u32,
@@ -14,7 +14,8 @@ pub(crate) struct DepthMap {
 }
 
 impl DepthMap {
-    /// `size` texels a side, `layers` layers. `field` is the path of the size in the caller's descriptor.
+    /// Makes a map of `size` texels per side with `layers` layers. `field` is the path of the size in the caller's
+    /// descriptor.
     pub fn new(
         device: &wgpu::Device,
         label: &str,
@@ -107,7 +108,7 @@ impl DepthMap {
         &self.layer_views[layer as usize]
     }
 
-    /// One layer, as the source or target of a copy of [`DepthMap::layer_extent`].
+    /// Returns one layer as the source or target of a copy of [`DepthMap::layer_extent`].
     pub fn layer_copy(&self, layer: u32) -> wgpu::TexelCopyTextureInfo<'_> {
         wgpu::TexelCopyTextureInfo {
             texture: &self.texture,
@@ -141,7 +142,7 @@ impl DepthMap {
         self.layers
     }
 
-    /// Device memory of all layers.
+    /// Returns the device memory of all layers in bytes.
     pub fn bytes(&self) -> u64 {
         bytes(
             self.size(),
@@ -151,8 +152,9 @@ impl DepthMap {
     }
 }
 
-/// wgpu's OpenGL backend makes a texture of one layer a plain 2D texture, and a square one of a multiple of six layers a cube
-/// map; an array binding then reads nothing. One layer more, never used, keeps it an array.
+/// Returns how many layers to allocate so that `layers` of them can be bound as an array. wgpu's OpenGL backend makes a
+/// texture of one layer a plain 2D texture, and a square one of a multiple of six layers a cube map; an array binding
+/// then reads nothing. One more layer, which is never used, keeps it an array.
 pub(crate) fn allocated_layers(device: &wgpu::Device, layers: u64) -> u64 {
     let opengl = device.adapter_info().backend == wgpu::Backend::Gl;
     let not_an_array = layers == 1 || layers.is_multiple_of(6);

@@ -1,7 +1,8 @@
-//! What objects need of a device's limits, checked before anything is made. A device may have been created with limits far below
-//! WebGPU's defaults; what it then says of an object is no help to whoever chose a number of cascades.
+//! Checks what objects need of a device's limits before anything is made. A device may have been created with limits
+//! far below WebGPU's defaults; the message that it then gives about an object does not help whoever chose a number of
+//! cascades.
 
-/// A limit in its own unit, what of it is needed, and what the device has.
+/// Is a limit in its own unit, with the amount that is needed and the amount that the device has.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Need {
     pub limit: &'static str,
@@ -18,7 +19,7 @@ impl Need {
         }
     }
 
-    /// The first of `needs` that the device does not meet.
+    /// Returns the first of `needs` that the device does not meet.
     pub fn first_unmet(needs: impl IntoIterator<Item = Self>) -> Option<Self> {
         needs.into_iter().find(|need| need.needed > need.maximum)
     }

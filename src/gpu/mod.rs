@@ -1,4 +1,4 @@
-//! A room beside the stairs: the plumbing between the library and a wgpu device. Knows nothing of shadows.
+//! Connects the library to a wgpu device. It does not depend on anything about shadows.
 //!
 //! ```text
 //! scope.rs        device errors as values
@@ -6,7 +6,7 @@
 //! depth_format.rs DepthFormat: 32 or 16 bits a texel
 //! depth_map.rs    a layered depth texture
 //! upload.rs       uniform buffers written in command order
-//! multiview.rs    which devices draw six views at once, rightly
+//! multiview.rs    which devices draw six faces at once correctly
 //! fullscreen.rs   pipelines of passes over a whole viewport
 //! ```
 
@@ -22,6 +22,6 @@ pub use depth_format::DepthFormat;
 pub(crate) use depth_map::{DepthMap, allocated_layers};
 pub(crate) use fullscreen::fullscreen_pipeline;
 pub(crate) use limits::Need;
-pub(crate) use multiview::{FACE_COUNT, SIX_VIEWS, draws_six_views};
+pub(crate) use multiview::{ALL_FACES_MASK, FACE_COUNT, supports_cube_multiview};
 pub(crate) use scope::{capture_device_errors, filled_buffer};
 pub(crate) use upload::{PendingUpload, UploadBuffer};

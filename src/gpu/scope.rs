@@ -1,8 +1,8 @@
-//! Device errors as values: wgpu reports them to an error scope, or, where the device is lost, not at all.
+//! Returns device errors as values: wgpu reports them to an error scope, or, where the device is lost, not at all.
 //!
-//! A browser's WebGPU answers an error scope later, in a promise. There is no error to return by then, and a scope that was
-//! closed without waiting would swallow it. So in a browser no scope is opened: errors go where the engine listens for them,
-//! to `Device::on_uncaptured_error` and `Device::set_device_lost_callback`.
+//! A browser's WebGPU resolves an error scope later, in a promise. There is no error to return by then, and a scope
+//! that was closed without waiting would swallow it. So in a browser no scope is opened: errors go where the engine
+//! listens for them, to `Device::on_uncaptured_error` and `Device::set_device_lost_callback`.
 
 use std::future::Future;
 use std::pin::pin;
@@ -10,8 +10,8 @@ use std::task::{Context, Poll, Waker};
 
 use crate::DeviceRefusal;
 
-/// Runs `create` and returns what it made if the device made all of it. In a browser that is always so, and an object that
-/// could not be made is an invalid one, as WebGPU has it.
+/// Runs `create` and returns what it made if the device made all of it. In a browser with WebGPU no error is captured,
+/// and an object that could not be made is an invalid one, as WebGPU specifies.
 pub(crate) fn capture_device_errors<T>(
     device: &wgpu::Device,
     create: impl FnOnce() -> T,
@@ -22,7 +22,7 @@ pub(crate) fn capture_device_errors<T>(
     })
 }
 
-/// A buffer that holds `contents` (a multiple of 4 bytes, not empty).
+/// Makes a buffer that holds `contents` (a multiple of 4 bytes, not empty).
 pub(crate) fn filled_buffer(
     device: &wgpu::Device,
     label: &str,
@@ -45,8 +45,9 @@ pub(crate) fn filled_buffer(
     })
 }
 
-/// wgpu keeps the loss of a device from error scopes and hands out objects that are none. A buffer that is mapped at its
-/// creation is the exception: its memory cannot be reached. It needs no queue and waits for nothing.
+/// Returns whether the device is not lost. wgpu does not report the loss of a device to error scopes and returns
+/// invalid objects. A buffer that is mapped at its creation is the exception: its memory cannot be reached. This probe
+/// needs no queue and waits for nothing.
 fn is_alive(device: &wgpu::Device) -> bool {
     let probe = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("shadow device probe"),
@@ -57,7 +58,8 @@ fn is_alive(device: &wgpu::Device) -> bool {
     probe.get_mapped_range_mut(..).is_ok()
 }
 
-/// `create` returns none where the device did not do its part. Without a word from the device that means that it is lost.
+/// Runs `create` in error scopes. `create` returns `None` where the device did not make its object; if the device
+/// reports no error with that, it is lost.
 fn scoped<T>(
     device: &wgpu::Device,
     create: impl FnOnce() -> Option<T>,
@@ -72,7 +74,7 @@ fn scoped<T>(
     let invalid = poll_once(validation.pop()).flatten();
     let out_of_memory = poll_once(memory.pop()).flatten();
     let failed = poll_once(internal.pop()).flatten();
-    // Out of memory comes first: what is then made of the missing object is invalid only in consequence.
+    // Out of memory comes first: errors about the missing object are only its consequence.
     if out_of_memory.is_some() {
         return Err(DeviceRefusal::OutOfMemory);
     }
@@ -83,8 +85,8 @@ fn scoped<T>(
     }
 }
 
-/// Returns whether error scopes of the device are answered later than the call that closes them. WebGL in a browser is wgpu's
-/// own and answers at once.
+/// Returns whether error scopes of the device are resolved later than the call that closes them. WebGL in a browser is
+/// wgpu's own and resolves at once.
 fn answers_later(device: &wgpu::Device) -> bool {
     cfg!(target_family = "wasm") && device.adapter_info().backend == wgpu::Backend::BrowserWebGpu
 }

@@ -1,24 +1,25 @@
-//! Small uniform buffers, written in the order of the engine's own commands.
+//! Defines small uniform buffers that are written in the order of the engine's own commands.
 
 use crate::gpu::{capture_device_errors, filled_buffer};
 use crate::{DeviceRefusal, ShadowError};
 
-/// A uniform buffer whose writes go through the engine's encoder, so that two frames recorded before one submission each see
-/// their own values. Unchanged contents are not written again.
+/// Is a uniform buffer whose writes go through the engine's encoder, so that two frames recorded before one submission
+/// each see their own values. Unchanged contents are not written again.
 #[derive(Debug)]
 pub(crate) struct UploadBuffer {
     buffer: wgpu::Buffer,
     written: Vec<u8>,
 }
 
-/// Bytes on their way: made before anything is recorded, so that a device that refuses leaves the encoder untouched.
+/// Holds bytes to be copied, made before anything is recorded, so that a device that refuses leaves the encoder
+/// untouched.
 pub(crate) struct PendingUpload {
     staging: wgpu::Buffer,
     bytes: Vec<u8>,
 }
 
 impl UploadBuffer {
-    /// A zeroed buffer of `size` bytes.
+    /// Makes a zeroed buffer of `size` bytes.
     pub fn new(device: &wgpu::Device, label: &str, size: u64) -> Result<Self, ShadowError> {
         capture_device_errors(device, || {
             device.create_buffer(&wgpu::BufferDescriptor {
@@ -39,7 +40,8 @@ impl UploadBuffer {
         &self.buffer
     }
 
-    /// Stages `bytes` (at most the buffer's size, a multiple of 4); none where the buffer holds them already.
+    /// Stages `bytes` (at most the buffer's size, a multiple of 4). Returns `None` where the buffer holds them already
+    /// or there are none.
     pub fn prepare(
         &self,
         device: &wgpu::Device,
@@ -65,7 +67,7 @@ impl UploadBuffer {
         }
     }
 
-    /// Forgets what was written: the next bytes go up whatever they are.
+    /// Forgets what was written: the next bytes are copied whatever they are.
     pub fn invalidate(&mut self) {
         self.written.clear();
     }

@@ -3,8 +3,8 @@
 use crate::error::BindingsError;
 use crate::gpu::{Need, capture_device_errors};
 use crate::receive::filter::FilterSampler;
-use crate::receive::uniforms::view_uniform_bytes;
 use crate::receive::texel_access::TexelAccess;
+use crate::receive::uniforms::view_uniform_bytes;
 use crate::receive::{Sampling, ShadowViewUniform, emit};
 use crate::shader;
 
