@@ -3,11 +3,12 @@
 
 use glam::{DMat4, DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Bias, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, ShadowBindings, ShadowBindingsDescriptor,
+    Bias, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, ShadowBindings,
+    ShadowBindingsDescriptor,
 };
 
 use crate::support::camera::{Camera, Lens};
+use crate::support::frames::{Coverage, DirectionalFrame};
 use crate::support::gpu::gpu;
 use crate::support::probe::record;
 use crate::support::scene::{Mesh, Scene, occluded};

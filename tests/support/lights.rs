@@ -2,14 +2,16 @@
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
-    Aabb, Bias, Coverage, DirectionalFrame, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, Filter, OmniFrame, OmniLight, OmniShadow, OmniShadowDescriptor,
-    OmniShadowPool, PoolDescriptor, PoolFrame, PoolLight, ShadowSource, SpotFrame, SpotLight,
-    SpotShadow, SpotShadowDescriptor, SpotShadowPool,
+    Aabb, Bias, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter,
+    OmniLight, OmniShadow, OmniShadowDescriptor, OmniShadowPool, PoolDescriptor, PoolLight,
+    ShadowSource, SpotLight, SpotShadow, SpotShadowDescriptor, SpotShadowPool,
 };
 
 use crate::support::ask::{record_omni, record_spot, submitted};
 use crate::support::camera::Camera;
+use crate::support::frames::{
+    Coverage, DirectionalFrame, OmniFrame, PoolFrame, RecordFrame, SpotFrame,
+};
 use crate::support::gpu::Gpu;
 use crate::support::probe::record;
 use crate::support::scene::{Mesh, Scene};
@@ -171,7 +173,7 @@ impl Kind {
                 let slots = [(); 2].map(|()| pool.insert().expect("a free slot"));
                 let lights = slots.map(|slot| in_pool(slot, spot_light));
                 let frame = pool_frame(&lights, &casters);
-                submitted(gpu, |encoder| pool.record(device, encoder, &frame))
+                submitted(gpu, |encoder| pool.record_frame(encoder, &frame))
                     .expect("a valid frame");
                 Box::new(pool)
             }
@@ -181,7 +183,7 @@ impl Kind {
                 let slots = [(); 2].map(|()| pool.insert().expect("a free slot"));
                 let lights = slots.map(|slot| in_pool(slot, omni_light));
                 let frame = pool_frame(&lights, &casters);
-                submitted(gpu, |encoder| pool.record(device, encoder, &frame))
+                submitted(gpu, |encoder| pool.record_frame(encoder, &frame))
                     .expect("a valid frame");
                 Box::new(pool)
             }
