@@ -337,7 +337,15 @@ pub enum BindingsError {
         /// What the device was created with.
         maximum: u64,
     },
-    /// The device is lost, out of memory, or refused an object: for instance a light of another device.
+    /// A light whose maps are on another device.
+    #[error(
+        "ShadowBindingsDescriptor::lights: {name:?} must have been made on the device that is passed"
+    )]
+    OtherDevice {
+        /// The light's name.
+        name: String,
+    },
+    /// The device is lost, out of memory, or refused an object.
     #[error("the device did not make {object}: {refusal}")]
     Device {
         /// What was being created.
@@ -389,7 +397,10 @@ pub enum DebugViewError {
         /// Layers of the map.
         layers: u32,
     },
-    /// The device is lost, out of memory, or refused an object: for instance a light of another device.
+    /// Maps that are on another device than the view.
+    #[error("DebugView: the maps must be on the device that the view was made on")]
+    OtherDevice,
+    /// The device is lost, out of memory, or refused an object.
     #[error("the device did not make {object}: {refusal}")]
     Device {
         /// What was being created.

@@ -93,12 +93,12 @@ pub use gpu::DepthFormat;
 pub use light::{
     Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniLight,
     OmniShadow, OmniShadowDescriptor, OmniShadowPool, PoolDescriptor, PoolLight, ShadowFrame,
-    ShadowFrameDescriptor, ShadowReport, ShadowScene, ShadowSlot, SpotLight, SpotShadow,
-    SpotShadowDescriptor, SpotShadowPool, ViewReport, ViewStatus,
+    ShadowFrameDescriptor, ShadowScene, ShadowSlot, SpotLight, SpotShadow, SpotShadowDescriptor,
+    SpotShadowPool,
 };
 pub use receive::{
-    Bias, Filter, ShadowBindings, ShadowBindingsDescriptor, ShadowSource, ShadowViewUniform,
-    reference,
+    Bias, Filter, ShadowBindings, ShadowBindingsDescriptor, ShadowMaps, ShadowReport,
+    ShadowViewUniform, ViewReport, ViewStatus, reference,
 };
 pub use {glam, wgpu};
 

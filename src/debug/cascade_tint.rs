@@ -5,7 +5,7 @@ use glam::Mat4;
 
 use crate::error::DeviceRefusal;
 use crate::gpu::{capture_device_errors, filled_buffer, fullscreen_pipeline};
-use crate::receive::{Receiver, ShadowViewUniform};
+use crate::receive::{SampledMaps, ShadowViewUniform};
 use crate::shader;
 
 /// Mirror of `ShadowTint` in `wgsl/pass/cascade_tint.wgsl`.
@@ -46,13 +46,13 @@ impl CascadeTint {
         &self,
         device: &wgpu::Device,
         pass: &mut wgpu::RenderPass<'_>,
-        receiver: &Receiver<'_>,
+        maps: &SampledMaps<'_>,
         depth: &wgpu::TextureView,
         render_from_clip: Mat4,
     ) -> Result<(), DeviceRefusal> {
         let mut views = [ShadowViewUniform::zeroed(); Self::VIEWS];
-        let count = receiver.uniforms.len().min(Self::VIEWS);
-        views[..count].copy_from_slice(&receiver.uniforms[..count]);
+        let count = maps.uniforms.len().min(Self::VIEWS);
+        views[..count].copy_from_slice(&maps.uniforms[..count]);
         let header = TintUniform {
             render_from_clip: render_from_clip.to_cols_array_2d(),
             count: [count as u32, 0, 0, 0],

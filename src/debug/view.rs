@@ -7,7 +7,7 @@ use crate::debug::cascade_tint::CascadeTint;
 use crate::debug::limits::check_debug_view;
 use crate::error::{DebugViewError, DeviceRefusal};
 use crate::gpu::{capture_device_errors, filled_buffer, fullscreen_pipeline};
-use crate::receive::{Selection, ShadowSource, ShadowViewUniform};
+use crate::receive::{Selection, ShadowMaps, ShadowViewUniform};
 use crate::shader;
 
 /// Mirror of `ShadowDebugView` in `wgsl/pass/debug_view.wgsl`.
@@ -37,6 +37,7 @@ pub enum DebugPicture {
 /// casts. Depths of local lights are shown as linear distance.
 #[derive(Debug)]
 pub struct DebugView {
+    device: wgpu::Device,
     format: wgpu::TextureFormat,
     layer: wgpu::RenderPipeline,
     cross: wgpu::RenderPipeline,
@@ -85,6 +86,7 @@ impl DebugView {
                 fullscreen_pipeline(device, "shadow debug view", &layout, &module, entry, target)
             };
             Self {
+                device: device.clone(),
                 format,
                 layer: pipeline("shadow_debug_layer"),
                 cross: pipeline("shadow_debug_cross"),
@@ -99,7 +101,7 @@ impl DebugView {
         capture_device_errors(device, create).map_err(not_made("the pipelines of a debug view"))
     }
 
-    /// Draws `picture` of `source` over the whole viewport of `pass`, which the engine may set to a corner of its window. Sets
+    /// Draws `picture` of `maps` over the whole viewport of `pass`, which the engine may set to a corner of its window. Sets
     /// pipeline and bind group 0.
     ///
     /// # Errors
@@ -107,20 +109,20 @@ impl DebugView {
     /// out of memory, or not the light's own; nothing is drawn then.
     pub fn draw(
         &self,
-        device: &wgpu::Device,
         pass: &mut wgpu::RenderPass<'_>,
-        source: ShadowSource<'_>,
+        maps: &ShadowMaps,
         picture: DebugPicture,
     ) -> Result<(), DebugViewError> {
-        let receiver = source.receiver;
-        let layers = receiver.view_count;
+        self.check_device(maps)?;
+        let sampled = maps.sampled();
+        let layers = sampled.view_count;
         let (pipeline, first_layer) = match picture {
             DebugPicture::Layer(layer) => (&self.layer, layer),
             DebugPicture::Cross => (&self.cross, 0),
             DebugPicture::PoolCross(index) => (&self.cross, index.saturating_mul(FACES)),
         };
         let is_cross = !matches!(picture, DebugPicture::Layer(_));
-        if is_cross && receiver.selection != Selection::CubeFace {
+        if is_cross && sampled.selection != Selection::CubeFace {
             return Err(DebugViewError::NotACube { layers });
         }
         if first_layer >= layers {
@@ -130,7 +132,7 @@ impl DebugView {
             });
         }
         let mut views = [ShadowViewUniform::zeroed(); FACES as usize];
-        let shown = &receiver.uniforms[first_layer as usize..];
+        let shown = &sampled.uniforms[first_layer as usize..];
         for (view, uniform) in views.iter_mut().zip(shown) {
             *view = *uniform;
         }
@@ -139,7 +141,7 @@ impl DebugView {
             local: [u32::from(local), 0, 0, 0],
         };
         let bind_group = self
-            .bind_group(device, &header, &views, receiver.map)
+            .bind_group(&header, &views, sampled.map)
             .map_err(not_made("the bind group of a debug view"))?;
         pass.set_pipeline(pipeline);
         pass.set_bind_group(0, &bind_group, &[]);
@@ -147,7 +149,7 @@ impl DebugView {
         Ok(())
     }
 
-    /// Multiplies the picture in `pass` by a colour for the view of `source` that serves each pixel: red, green, blue, yellow,
+    /// Multiplies the picture in `pass` by a colour for the view of `maps` that serves each pixel: red, green, blue, yellow,
     /// cyan, magenta, orange, violet for the first eight layers, grey where none does. `depth` is a single-sampled depth
     /// texture of the picture, of the viewport's shape, and `render_from_clip` the inverse of its camera's matrix; depths of 0
     /// and 1 count as sky. The faces of a point light overlap by a filter's reach, and there the first is shown. Sets pipeline
@@ -160,29 +162,36 @@ impl DebugView {
     /// out of memory, or not the light's own, or a `depth` that it cannot sample. Nothing is drawn then.
     pub fn draw_cascades(
         &self,
-        device: &wgpu::Device,
         pass: &mut wgpu::RenderPass<'_>,
-        source: ShadowSource<'_>,
+        maps: &ShadowMaps,
         depth: &wgpu::TextureView,
         render_from_clip: Mat4,
     ) -> Result<(), DebugViewError> {
+        self.check_device(maps)?;
         let tint = self.tint.as_ref().ok_or(DebugViewError::Format {
             format: self.format,
         })?;
-        tint.draw(device, pass, &source.receiver, depth, render_from_clip)
+        tint.draw(&self.device, pass, &maps.sampled(), depth, render_from_clip)
             .map_err(not_made("the bind group of a debug view"))
+    }
+
+    fn check_device(&self, maps: &ShadowMaps) -> Result<(), DebugViewError> {
+        if *maps.device() == self.device {
+            Ok(())
+        } else {
+            Err(DebugViewError::OtherDevice)
+        }
     }
 
     fn bind_group(
         &self,
-        device: &wgpu::Device,
         header: &DebugUniform,
         views: &[ShadowViewUniform],
         map: &wgpu::TextureView,
     ) -> Result<wgpu::BindGroup, DeviceRefusal> {
         let upload = |contents: &[u8]| {
             let usage = wgpu::BufferUsages::UNIFORM;
-            filled_buffer(device, "shadow debug view", contents, usage)
+            filled_buffer(&self.device, "shadow debug view", contents, usage)
         };
         let header = upload(bytemuck::bytes_of(header))?;
         let views = upload(bytemuck::cast_slice(views))?;
@@ -196,8 +205,8 @@ impl DebugView {
             .zip(resources)
             .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
             .collect();
-        capture_device_errors(device, || {
-            device.create_bind_group(&wgpu::BindGroupDescriptor {
+        capture_device_errors(&self.device, || {
+            self.device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("shadow debug view"),
                 layout: &self.layout,
                 entries: &entries,

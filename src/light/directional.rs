@@ -8,11 +8,10 @@ use crate::fit::{
     DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, MAX_CASCADES, Region,
 };
 use crate::light::layer_limits::check_layers;
-use crate::light::maps::{
-    LayerState, LightMaps, LightMapsDescriptor, MapsFrame, light_maps_getters,
+use crate::receive::{
+    LayerState, MapsFrame, Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, ShadowReport,
+    check_bias, check_planar_filter,
 };
-use crate::light::report::ShadowReport;
-use crate::receive::{Sampling, Selection, check_bias, check_planar_filter};
 use crate::{
     Bias, CascadeSplit, DepthFormat, Filter, ShadowError, ShadowFrame, ShadowView, Stability,
 };
@@ -115,7 +114,7 @@ impl DirectionalLight {
 /// Shadows of a directional light: a depth texture with one layer per cascade, its uniforms, and what is needed to fill them.
 #[derive(Debug)]
 pub struct DirectionalShadow {
-    maps: LightMaps,
+    maps: ShadowMaps,
     limits: FitLimits,
     fit: DirectionalFit,
     scratch: FitScratch,
@@ -164,9 +163,9 @@ impl DirectionalShadow {
             depth_format: descriptor.depth_format,
             blend: descriptor.blend,
         };
-        let maps = LightMaps::new(
+        let maps = ShadowMaps::new(
             device,
-            &LightMapsDescriptor {
+            &ShadowMapsDescriptor {
                 label: descriptor.label.unwrap_or("directional shadow"),
                 size_field: "DirectionalShadowDescriptor::map_size",
                 map_size: descriptor.map_size,
@@ -265,6 +264,14 @@ impl DirectionalShadow {
         }
         Ok(views)
     }
-}
+    /// Returns the light's depth texture, uniforms and report.
+    pub fn maps(&self) -> &ShadowMaps {
+        &self.maps
+    }
 
-light_maps_getters!(DirectionalShadow, "cascade");
+    /// Says that the maps no longer hold what was recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)): the
+    /// next frame draws every view.
+    pub fn invalidate(&mut self) {
+        self.maps.invalidate();
+    }
+}

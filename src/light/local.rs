@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use crate::cast::ViewDraws;
 use crate::fit::{LightAxes, LocalFit, LocalInput, MAX_LOCAL_VIEWS, Reached};
-use crate::light::maps::{LayerState, LightMaps, MapsFrame};
+use crate::receive::{LayerState, MapsFrame, ShadowMaps};
 use crate::{ShadowError, ShadowFrame, ShadowReport, ShadowView};
 
 /// State of the lights in the slots of one set of maps.
@@ -81,7 +81,7 @@ impl LocalLights {
     /// Fits, culls, uploads and records into `maps`.
     pub fn record<'m>(
         &mut self,
-        maps: &'m mut LightMaps,
+        maps: &'m mut ShadowMaps,
         encoder: &mut wgpu::CommandEncoder,
         frame: &ShadowFrame<'_>,
         lights: &[LocalPlacement],
@@ -159,7 +159,7 @@ impl LocalLights {
     /// Fits and culls one light.
     fn candidate(
         &mut self,
-        maps: &mut LightMaps,
+        maps: &mut ShadowMaps,
         frame: &ShadowFrame<'_>,
         light: &LocalPlacement,
     ) -> Result<Candidate, ShadowError> {

@@ -7,24 +7,19 @@
 //! omni.rs         OmniShadow: a light that shines in every direction
 //! pool.rs         pools of spot and point lights
 //! local.rs        what spot and point lights share
-//! maps.rs         what every light owns
-//! layer_limits.rs what its maps need of a device's limits
-//! report.rs       ShadowReport: what a light did in a frame
+//! layer_limits.rs what the maps of a light need of a device's limits
 //! ```
 
 mod directional;
 mod layer_limits;
 mod local;
-mod maps;
 mod omni;
 mod pool;
-mod report;
 mod scene;
 mod spot;
 
 pub use directional::{DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor};
 pub use omni::{OmniLight, OmniShadow, OmniShadowDescriptor};
 pub use pool::{OmniShadowPool, PoolDescriptor, PoolLight, ShadowSlot, SpotShadowPool};
-pub use report::{ShadowReport, ViewReport, ViewStatus};
 pub use scene::{Coverage, ShadowFrame, ShadowFrameDescriptor, ShadowScene};
 pub use spot::{SpotLight, SpotShadow, SpotShadowDescriptor};

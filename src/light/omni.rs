@@ -6,8 +6,9 @@ use crate::check;
 use crate::fit::LightAxes;
 use crate::light::layer_limits::check_layers;
 use crate::light::local::{LocalLights, LocalPlacement};
-use crate::light::maps::{LightMaps, LightMapsDescriptor, light_maps_getters};
-use crate::receive::{Sampling, Selection, check_bias, check_filter};
+use crate::receive::{
+    Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, check_bias, check_filter,
+};
 use crate::{Bias, Filter, ShadowError, ShadowFrame, ShadowReport};
 
 /// What an [`OmniShadow`] is made of.
@@ -66,7 +67,7 @@ pub struct OmniLight {
 /// pass into wrong faces, and always gets a pass for each. [`ShadowReport::passes`] tells which it was.
 #[derive(Debug)]
 pub struct OmniShadow {
-    maps: LightMaps,
+    maps: ShadowMaps,
     lights: LocalLights,
 }
 
@@ -82,9 +83,9 @@ impl OmniShadow {
         check_filter("OmniShadowDescriptor::filter", descriptor.filter)?;
         check_bias("OmniShadowDescriptor::bias", descriptor.bias)?;
         check_layers(device, "the six faces of an OmniShadow", 6)?;
-        let maps = LightMaps::new(
+        let maps = ShadowMaps::new(
             device,
-            &LightMapsDescriptor {
+            &ShadowMapsDescriptor {
                 label: descriptor.label.unwrap_or("omni shadow"),
                 size_field: "OmniShadowDescriptor::map_size",
                 map_size: descriptor.map_size,
@@ -120,6 +121,16 @@ impl OmniShadow {
         self.lights
             .record(&mut self.maps, encoder, frame, &[light], None)
     }
+    /// Returns the light's depth texture, uniforms and report.
+    pub fn maps(&self) -> &ShadowMaps {
+        &self.maps
+    }
+
+    /// Says that the maps no longer hold what was recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)): the
+    /// next frame draws every view.
+    pub fn invalidate(&mut self) {
+        self.maps.invalidate();
+    }
 }
 
 impl OmniLight {
@@ -143,8 +154,6 @@ impl OmniLight {
         })
     }
 }
-
-light_maps_getters!(OmniShadow, "face (+x, -x, +y, -y, +z, -z)");
 
 /// Axes of the faces +x, -x, +y, -y, +z, -z. Their up vectors are those of a cross unfolded around -z: the four sides stand
 /// upright, and top and bottom join the side that looks along -z.

@@ -5,8 +5,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::check;
 use crate::light::layer_limits::check_layers;
 use crate::light::local::{LocalLights, LocalPlacement};
-use crate::light::maps::{LightMaps, LightMapsDescriptor, light_maps_getters};
-use crate::receive::{Sampling, Selection, check_bias, check_filter, check_planar_filter};
+use crate::receive::{
+    Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, check_bias, check_filter,
+    check_planar_filter,
+};
 use crate::{Bias, Filter, OmniLight, ShadowError, ShadowFrame, ShadowReport, SpotLight};
 
 /// What a pool is made of.
@@ -148,7 +150,7 @@ macro_rules! pool {
         $(#[$doc])*
         #[derive(Debug)]
         pub struct $pool {
-            maps: LightMaps,
+            maps: ShadowMaps,
             lights: LocalLights,
             slots: Slots,
             /// Empty between frames; kept for its memory.
@@ -167,9 +169,9 @@ macro_rules! pool {
                 $filter_check("PoolDescriptor::filter", descriptor.filter)?;
                 check_bias("PoolDescriptor::bias", descriptor.bias)?;
                 check_descriptor(device, descriptor, $views)?;
-                let maps = LightMaps::new(
+                let maps = ShadowMaps::new(
                     device,
-                    &LightMapsDescriptor {
+                    &ShadowMapsDescriptor {
                         label: descriptor.label.unwrap_or("shadow pool"),
                         size_field: "PoolDescriptor::map_size",
                         map_size: descriptor.map_size,
@@ -246,6 +248,18 @@ macro_rules! pool {
                 self.placements = placements;
                 report
             }
+
+            /// Returns the light's depth texture, uniforms and report.
+            pub fn maps(&self) -> &ShadowMaps {
+                &self.maps
+            }
+
+            /// Says that the maps no longer hold what was recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)): the
+            /// next frame draws every view, or under a budget as many as it allows, and the rest is lit
+            /// until its turn.
+            pub fn invalidate(&mut self) {
+                self.maps.invalidate();
+            }
         }
     };
 }
@@ -271,6 +285,3 @@ pool!(
     Selection::OneView,
     check_planar_filter
 );
-
-light_maps_getters!(OmniShadowPool, "face, six to a slot");
-light_maps_getters!(SpotShadowPool, "slot");

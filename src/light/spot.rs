@@ -6,8 +6,9 @@ use crate::check;
 use crate::fit::{LightAxes, MAX_LOCAL_VIEWS};
 use crate::light::layer_limits::check_layers;
 use crate::light::local::{LocalLights, LocalPlacement};
-use crate::light::maps::{LightMaps, LightMapsDescriptor, light_maps_getters};
-use crate::receive::{Sampling, Selection, check_bias, check_planar_filter};
+use crate::receive::{
+    Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, check_bias, check_planar_filter,
+};
 use crate::{Bias, Filter, ShadowError, ShadowFrame, ShadowReport};
 
 /// What a [`SpotShadow`] is made of.
@@ -58,7 +59,7 @@ impl SpotLight {
 /// Shadows of a spot light: one perspective view in a depth texture of one layer.
 #[derive(Debug)]
 pub struct SpotShadow {
-    maps: LightMaps,
+    maps: ShadowMaps,
     lights: LocalLights,
 }
 
@@ -74,9 +75,9 @@ impl SpotShadow {
         check_planar_filter("SpotShadowDescriptor::filter", descriptor.filter)?;
         check_bias("SpotShadowDescriptor::bias", descriptor.bias)?;
         check_layers(device, "the map of a SpotShadow", 1)?;
-        let maps = LightMaps::new(
+        let maps = ShadowMaps::new(
             device,
-            &LightMapsDescriptor {
+            &ShadowMapsDescriptor {
                 label: descriptor.label.unwrap_or("spot shadow"),
                 size_field: "SpotShadowDescriptor::map_size",
                 map_size: descriptor.map_size,
@@ -111,6 +112,16 @@ impl SpotShadow {
         self.lights
             .record(&mut self.maps, encoder, frame, &[light], None)
     }
+    /// Returns the light's depth texture, uniforms and report.
+    pub fn maps(&self) -> &ShadowMaps {
+        &self.maps
+    }
+
+    /// Says that the maps no longer hold what was recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)): the
+    /// next frame draws every view.
+    pub fn invalidate(&mut self) {
+        self.maps.invalidate();
+    }
 }
 
 impl SpotLight {
@@ -144,5 +155,3 @@ impl SpotLight {
         })
     }
 }
-
-light_maps_getters!(SpotShadow, "light");

@@ -2,44 +2,13 @@
 
 use crate::error::BindingsError;
 use crate::gpu::{Need, capture_device_errors};
+use crate::receive::emit;
 use crate::receive::filter::FilterSampler;
+use crate::receive::layout::{NamedMaps, create_bind_group, create_layout, used_samplers};
+use crate::receive::maps::ShadowMaps;
 use crate::receive::texel_access::TexelAccess;
 use crate::receive::uniforms::view_uniform_bytes;
-use crate::receive::{Sampling, ShadowViewUniform, emit};
 use crate::shader;
-
-/// What a light gives its receivers: its map, its uniforms, and how to look them up.
-///
-/// Made by the lights' `source` methods; textures and buffers stay the light's own, so a bind group outlives every frame.
-#[derive(Clone, Copy, Debug)]
-pub struct ShadowSource<'a> {
-    pub(crate) receiver: Receiver<'a>,
-}
-
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Receiver<'a> {
-    pub map: &'a wgpu::TextureView,
-    pub views: &'a wgpu::Buffer,
-    pub view_count: u32,
-    /// What `views` holds since the last frame.
-    pub uniforms: &'a [ShadowViewUniform],
-    pub sampling: Sampling,
-    pub selection: Selection,
-    pub views_per_light: u32,
-    /// A pool: the lights are asked by index.
-    pub indexed: bool,
-}
-
-/// How a place chooses among a light's views; everything after the choice is the same for all lights.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Selection {
-    /// The first view that holds the whole kernel: the cascades of a directional light, near to far.
-    Cascades,
-    /// There is one: a spot.
-    OneView,
-    /// The face of a cube, by the major axis from the light.
-    CubeFace,
-}
 
 /// What a [`ShadowBindings`] is made of.
 #[derive(Clone, Copy, Debug)]
@@ -52,7 +21,7 @@ pub struct ShadowBindingsDescriptor<'a> {
     pub visibility: wgpu::ShaderStages,
     /// The lights by name. A light named `sun` is asked through `shadow_sun(position, normal)`, a pool named `lamps` through
     /// `shadow_lamps(index, position, normal)` with the index of the light's slot. An index that no slot has is lit.
-    pub lights: &'a [(&'a str, ShadowSource<'a>)],
+    pub lights: &'a [(&'a str, &'a ShadowMaps)],
 }
 
 impl Default for ShadowBindingsDescriptor<'_> {
@@ -104,18 +73,30 @@ impl ShadowBindings {
         device: &wgpu::Device,
         descriptor: &ShadowBindingsDescriptor<'_>,
     ) -> Result<Self, BindingsError> {
-        check_names(descriptor.lights)?;
-        let samplers = used_samplers(descriptor.lights);
-        check_limits(device, descriptor, &samplers)?;
+        let lights: Vec<_> = descriptor
+            .lights
+            .iter()
+            .map(|(name, maps)| (*name, maps.sampled()))
+            .collect();
+        check_names(&lights)?;
+        let foreign = |(_, maps): &&(_, &ShadowMaps)| maps.device() != device;
+        if let Some((name, _)) = descriptor.lights.iter().find(foreign) {
+            return Err(BindingsError::OtherDevice {
+                name: (*name).to_owned(),
+            });
+        }
+        let samplers = used_samplers(&lights);
+        check_limits(device, descriptor.group, &lights, &samplers)?;
         let access = if samplers.contains(&FilterSampler::Point) {
             TexelAccess::of(device)
         } else {
             TexelAccess::Gathers
         };
-        let wgsl = emit::wgsl(descriptor, &samplers, access)?;
+        let wgsl = emit::wgsl(descriptor.group, &lights, &samplers, access)?;
         let (layout, bind_group) = capture_device_errors(device, || {
-            let layout = create_layout(device, descriptor, &samplers, access);
-            let bind_group = create_bind_group(device, descriptor, &samplers, &layout);
+            let (label, visibility) = (descriptor.label, descriptor.visibility);
+            let layout = create_layout(device, visibility, label, &lights, &samplers, access);
+            let bind_group = create_bind_group(device, label, &lights, &samplers, &layout);
             (layout, bind_group)
         })
         .map_err(|refusal| BindingsError::Device {
@@ -151,9 +132,7 @@ impl ShadowBindings {
     }
 }
 
-type Lights<'a> = [(&'a str, ShadowSource<'a>)];
-
-fn check_names(lights: &Lights<'_>) -> Result<(), BindingsError> {
+fn check_names(lights: &NamedMaps<'_>) -> Result<(), BindingsError> {
     for (index, (name, _)) in lights.iter().enumerate() {
         let starts = name.starts_with(|c: char| c.is_ascii_lowercase());
         let body = name
@@ -192,43 +171,31 @@ fn is_taken(name: &str) -> bool {
         || name.starts_with("views_")
 }
 
-/// Samplers that the set's filters take, in binding order.
-fn used_samplers(lights: &Lights<'_>) -> Vec<FilterSampler> {
-    [FilterSampler::Comparison, FilterSampler::Point]
-        .into_iter()
-        .filter(|&sampler| {
-            lights
-                .iter()
-                .any(|(_, source)| source.receiver.sampling.filter.wgsl().1 == sampler)
-        })
-        .collect()
-}
-
 fn check_limits(
     device: &wgpu::Device,
-    descriptor: &ShadowBindingsDescriptor<'_>,
+    group: u32,
+    lights: &NamedMaps<'_>,
     samplers: &[FilterSampler],
 ) -> Result<(), BindingsError> {
     let limits = device.limits();
-    if descriptor.group >= limits.max_bind_groups {
+    if group >= limits.max_bind_groups {
         return Err(BindingsError::Group {
-            group: descriptor.group,
+            group,
             maximum: limits.max_bind_groups,
         });
     }
-    let lights = descriptor.lights.len() as u64;
+    let light_count = lights.len() as u64;
     let sampler_count = samplers.len() as u64;
-    let views = descriptor.lights.iter();
-    let most_views = views.map(|(_, source)| source.receiver.view_count).max();
+    let most_views = lights.iter().map(|(_, maps)| maps.view_count).max();
     let needs = [
         Need::new(
             "max_sampled_textures_per_shader_stage",
-            lights,
+            light_count,
             limits.max_sampled_textures_per_shader_stage,
         ),
         Need::new(
             "max_uniform_buffers_per_shader_stage",
-            lights,
+            light_count,
             limits.max_uniform_buffers_per_shader_stage,
         ),
         Need::new(
@@ -238,7 +205,7 @@ fn check_limits(
         ),
         Need::new(
             "max_bindings_per_bind_group",
-            2 * lights + sampler_count,
+            2 * light_count + sampler_count,
             limits.max_bindings_per_bind_group,
         ),
         Need::new(
@@ -255,113 +222,4 @@ fn check_limits(
             maximum: need.maximum,
         }),
     }
-}
-
-/// Bindings are numbered: samplers first, then uniforms and map of each light.
-pub(crate) fn views_binding(samplers: &[FilterSampler], light: usize) -> u32 {
-    (samplers.len() + 2 * light) as u32
-}
-
-/// How a light's map is bound on a device with `access` to texels: for the comparing sampler always as a depth texture.
-pub(crate) fn map_access(receiver: &Receiver<'_>, access: TexelAccess) -> TexelAccess {
-    match receiver.sampling.filter.wgsl().1 {
-        FilterSampler::Comparison => TexelAccess::Gathers,
-        FilterSampler::Point => access,
-    }
-}
-
-fn create_layout(
-    device: &wgpu::Device,
-    descriptor: &ShadowBindingsDescriptor<'_>,
-    samplers: &[FilterSampler],
-    access: TexelAccess,
-) -> wgpu::BindGroupLayout {
-    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: descriptor.visibility,
-        ty,
-        count: None,
-    };
-    let mut entries: Vec<_> = samplers
-        .iter()
-        .enumerate()
-        .map(|(binding, sampler)| {
-            let ty = match sampler {
-                FilterSampler::Comparison => wgpu::SamplerBindingType::Comparison,
-                FilterSampler::Point => wgpu::SamplerBindingType::NonFiltering,
-            };
-            entry(binding as u32, wgpu::BindingType::Sampler(ty))
-        })
-        .collect();
-    for (light, (_, source)) in descriptor.lights.iter().enumerate() {
-        let bytes = view_uniform_bytes(source.receiver.view_count.into());
-        let views = views_binding(samplers, light);
-        entries.push(entry(
-            views,
-            wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Uniform,
-                has_dynamic_offset: false,
-                min_binding_size: wgpu::BufferSize::new(bytes),
-            },
-        ));
-        let map = map_access(&source.receiver, access).map_binding();
-        entries.push(entry(views + 1, map));
-    }
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: descriptor.label.or(Some("shadow bindings")),
-        entries: &entries,
-    })
-}
-
-fn create_bind_group(
-    device: &wgpu::Device,
-    descriptor: &ShadowBindingsDescriptor<'_>,
-    samplers: &[FilterSampler],
-    layout: &wgpu::BindGroupLayout,
-) -> wgpu::BindGroup {
-    let made: Vec<_> = samplers
-        .iter()
-        .map(|sampler| create_sampler(device, *sampler))
-        .collect();
-    let mut entries: Vec<_> = made
-        .iter()
-        .enumerate()
-        .map(|(binding, sampler)| wgpu::BindGroupEntry {
-            binding: binding as u32,
-            resource: wgpu::BindingResource::Sampler(sampler),
-        })
-        .collect();
-    for (light, (_, source)) in descriptor.lights.iter().enumerate() {
-        let views = views_binding(samplers, light);
-        entries.push(wgpu::BindGroupEntry {
-            binding: views,
-            resource: source.receiver.views.as_entire_binding(),
-        });
-        entries.push(wgpu::BindGroupEntry {
-            binding: views + 1,
-            resource: wgpu::BindingResource::TextureView(source.receiver.map),
-        });
-    }
-    device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: descriptor.label.or(Some("shadow bindings")),
-        layout,
-        entries: &entries,
-    })
-}
-
-fn create_sampler(device: &wgpu::Device, sampler: FilterSampler) -> wgpu::Sampler {
-    let comparison = sampler == FilterSampler::Comparison;
-    let filter = if comparison {
-        wgpu::FilterMode::Linear
-    } else {
-        wgpu::FilterMode::Nearest
-    };
-    device.create_sampler(&wgpu::SamplerDescriptor {
-        label: Some("shadow sampler"),
-        mag_filter: filter,
-        min_filter: filter,
-        // Reversed depth: lit where the receiver is at least as near as what the map holds.
-        compare: comparison.then_some(wgpu::CompareFunction::GreaterEqual),
-        ..Default::default()
-    })
 }

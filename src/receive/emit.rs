@@ -3,15 +3,17 @@
 use std::fmt::Write;
 
 use crate::error::BindingsError;
-use crate::receive::bindings::{ShadowBindingsDescriptor, map_access, views_binding};
+use crate::receive::Bias;
 use crate::receive::filter::FilterSampler;
+use crate::receive::layout::{NamedMaps, map_access, views_binding};
+use crate::receive::sampled_maps::{SampledMaps, Selection};
 use crate::receive::texel_access::TexelAccess;
-use crate::receive::{Bias, Receiver, Selection};
 use crate::shader;
 
-/// The text for `descriptor`, whose filters take `samplers`, on a device with `access` to texels.
+/// Returns the text for `lights` in bind group `group`, whose filters take `samplers`, on a device with `access` to texels.
 pub(crate) fn wgsl(
-    descriptor: &ShadowBindingsDescriptor<'_>,
+    group: u32,
+    lights: &NamedMaps<'_>,
     samplers: &[FilterSampler],
     access: TexelAccess,
 ) -> Result<String, BindingsError> {
@@ -19,12 +21,12 @@ pub(crate) fn wgsl(
     if samplers.contains(&FilterSampler::Point) {
         modules.extend(access.module());
     }
-    for (_, source) in descriptor.lights {
-        let Receiver {
+    for (_, maps) in lights {
+        let SampledMaps {
             sampling,
             selection,
             ..
-        } = source.receiver;
+        } = *maps;
         modules.push(sampling.filter.wgsl().0);
         modules.push(sampling.bias.scheme(sampling.filter).module());
         if selection == Selection::CubeFace {
@@ -34,7 +36,7 @@ pub(crate) fn wgsl(
     }
     let mut text = shader::compose(&modules)?;
     // Writing to a String does not fail.
-    let _ = writeln!(text, "\nconst SHADOW_GROUP: u32 = {}u;", descriptor.group);
+    let _ = writeln!(text, "\nconst SHADOW_GROUP: u32 = {}u;", group);
     for (binding, sampler) in samplers.iter().enumerate() {
         let (name, ty) = sampler_names(*sampler);
         let _ = writeln!(
@@ -42,31 +44,31 @@ pub(crate) fn wgsl(
             "@group(SHADOW_GROUP) @binding({binding}) var {name}: {ty};"
         );
     }
-    for (light, (name, source)) in descriptor.lights.iter().enumerate() {
+    for (light, (name, maps)) in lights.iter().enumerate() {
         let binding = views_binding(samplers, light);
-        text += &light_wgsl(name, &source.receiver, binding, access);
+        text += &light_wgsl(name, maps, binding, access);
     }
     Ok(text)
 }
 
 /// Bindings and functions of one light.
-fn light_wgsl(name: &str, receiver: &Receiver<'_>, binding: u32, access: TexelAccess) -> String {
-    let count = receiver.view_count;
-    let (parameter, argument) = if receiver.indexed {
+fn light_wgsl(name: &str, maps: &SampledMaps<'_>, binding: u32, access: TexelAccess) -> String {
+    let count = maps.view_count;
+    let (parameter, argument) = if maps.indexed {
         ("index: u32, ", "index, ")
     } else {
         ("", "")
     };
-    let choice = match receiver.selection {
-        Selection::Cascades => first_that_covers(name, receiver),
-        Selection::OneView => view_that_holds(name, receiver, String::new()),
-        Selection::CubeFace => face_that_holds(name, receiver),
+    let choice = match maps.selection {
+        Selection::Cascades => first_that_covers(name, maps),
+        Selection::OneView => view_that_holds(name, maps, String::new()),
+        Selection::CubeFace => face_that_holds(name, maps),
     };
-    let blends = receiver.sampling.blend > 0.0 && count > 1;
-    let lookup = match receiver.sampling.filter.directions() {
-        None if blends => blended_lookup(name, receiver),
-        None => single_lookup(name, receiver, argument),
-        Some((offsets, samples)) => mean_lookup(name, receiver, argument, offsets, samples),
+    let blends = maps.sampling.blend > 0.0 && count > 1;
+    let lookup = match maps.sampling.filter.directions() {
+        None if blends => blended_lookup(name, maps),
+        None => single_lookup(name, maps, argument),
+        Some((offsets, samples)) => mean_lookup(name, maps, argument, offsets, samples),
     };
     format!(
         "
@@ -83,13 +85,13 @@ fn shadow_{name}({parameter}position: vec3<f32>, normal: vec3<f32>) -> f32 {{
 {lookup}}}
 ",
         map = binding + 1,
-        map_type = map_access(receiver, access).map_wgsl(),
+        map_type = map_access(maps, access).map_wgsl(),
     )
 }
 
 /// The first of a light's cascades that covers the place. A directional light has neither range nor cone to ask for.
-fn first_that_covers(name: &str, receiver: &Receiver<'_>) -> String {
-    let count = receiver.view_count;
+fn first_that_covers(name: &str, maps: &SampledMaps<'_>) -> String {
+    let count = maps.view_count;
     format!(
         "    for (var view = 0u; view < {count}u; view++) {{
         if shadow_view_covers(shadow_views_{name}[view], position) {{
@@ -101,16 +103,16 @@ fn first_that_covers(name: &str, receiver: &Receiver<'_>) -> String {
 }
 
 /// The face on which the place lies as seen from the light, if it holds it.
-fn face_that_holds(name: &str, receiver: &Receiver<'_>) -> String {
-    let any = any_view(receiver);
+fn face_that_holds(name: &str, maps: &SampledMaps<'_>) -> String {
+    let any = any_view(maps);
     let face = format!(" + shadow_cube_face(position - shadow_views_{name}[{any}].anchor)");
-    view_that_holds(name, receiver, face)
+    view_that_holds(name, maps, face)
 }
 
 /// The light's first view, or so many after it, if it holds the place.
-fn view_that_holds(name: &str, receiver: &Receiver<'_>, after_first: String) -> String {
-    let count = receiver.view_count;
-    let first = first_view(receiver);
+fn view_that_holds(name: &str, maps: &SampledMaps<'_>, after_first: String) -> String {
+    let count = maps.view_count;
+    let first = first_view(maps);
     format!(
         "    let view = {first}{after_first};
     if view < {count}u && shadow_view_holds(shadow_views_{name}[view], position) {{
@@ -122,9 +124,9 @@ fn view_that_holds(name: &str, receiver: &Receiver<'_>, after_first: String) -> 
 
 /// First view of a light; for an index that no slot of the pool has, the end of all views. The index is limited before it is
 /// multiplied: 32 bits do not hold every product.
-fn first_view(receiver: &Receiver<'_>) -> String {
-    let (count, per_light) = (receiver.view_count, receiver.views_per_light);
-    if receiver.indexed {
+fn first_view(maps: &SampledMaps<'_>) -> String {
+    let (count, per_light) = (maps.view_count, maps.views_per_light);
+    if maps.indexed {
         format!("min(index, {}u) * {per_light}u", count / per_light)
     } else {
         "0u".to_owned()
@@ -132,19 +134,19 @@ fn first_view(receiver: &Receiver<'_>) -> String {
 }
 
 /// A view of the light, for what all its views have in common; for an index that no slot has, one of another light.
-fn any_view(receiver: &Receiver<'_>) -> String {
-    let (count, per_light) = (receiver.view_count, receiver.views_per_light);
-    if receiver.indexed {
+fn any_view(maps: &SampledMaps<'_>) -> String {
+    let (count, per_light) = (maps.view_count, maps.views_per_light);
+    if maps.indexed {
         format!("min(index, {}u) * {per_light}u", count / per_light - 1)
     } else {
         "0u".to_owned()
     }
 }
 
-fn single_lookup(name: &str, receiver: &Receiver<'_>, argument: &str) -> String {
-    let count = receiver.view_count;
-    let make_receiver = make_receiver(receiver);
-    let lookup = lookup(name, receiver);
+fn single_lookup(name: &str, maps: &SampledMaps<'_>, argument: &str) -> String {
+    let count = maps.view_count;
+    let make_receiver = make_receiver(maps);
+    let lookup = lookup(name, maps);
     format!(
         "    let view = shadow_view_{name}({argument}position);
     if view == {count}u {{
@@ -158,10 +160,10 @@ fn single_lookup(name: &str, receiver: &Receiver<'_>, argument: &str) -> String 
 
 /// The mean of all cascades that hold the place, weighted from near to far: a cascade takes what the ones before it leave, and
 /// less toward its border. Continuous wherever a border lies.
-fn blended_lookup(name: &str, receiver: &Receiver<'_>) -> String {
-    let count = receiver.view_count;
-    let make_receiver = make_receiver(receiver);
-    let lookup = lookup(name, receiver);
+fn blended_lookup(name: &str, maps: &SampledMaps<'_>) -> String {
+    let count = maps.view_count;
+    let make_receiver = make_receiver(maps);
+    let lookup = lookup(name, maps);
     format!(
         "    var lit = 0.0;
     var share = 0.0;
@@ -182,16 +184,16 @@ fn blended_lookup(name: &str, receiver: &Receiver<'_>) -> String {
 /// the sake of the driver that `shadow_view_holds` tells of.
 fn mean_lookup(
     name: &str,
-    receiver: &Receiver<'_>,
+    maps: &SampledMaps<'_>,
     argument: &str,
     offsets: &str,
     samples: u32,
 ) -> String {
-    let count = receiver.view_count;
-    let any = any_view(receiver);
-    let make_receiver = make_receiver(receiver);
-    let lookup = lookup(name, receiver);
-    let meets = match receiver.sampling.bias {
+    let count = maps.view_count;
+    let any = any_view(maps);
+    let make_receiver = make_receiver(maps);
+    let lookup = lookup(name, maps);
+    let meets = match maps.sampling.bias {
         Bias::Manual { .. } => "shadow_direction_on_sphere(from_light, offset)",
         Bias::Auto | Bias::NormalOffset => "shadow_direction_on_plane(from_light, normal, offset)",
     };
@@ -219,13 +221,13 @@ fn mean_lookup(
     )
 }
 
-fn make_receiver(receiver: &Receiver<'_>) -> &'static str {
-    let sampling = &receiver.sampling;
+fn make_receiver(maps: &SampledMaps<'_>) -> &'static str {
+    let sampling = &maps.sampling;
     sampling.bias.scheme(sampling.filter).function()
 }
 
-fn lookup(name: &str, receiver: &Receiver<'_>) -> String {
-    let (filter, sampler) = receiver.sampling.filter.wgsl();
+fn lookup(name: &str, maps: &SampledMaps<'_>) -> String {
+    let (filter, sampler) = maps.sampling.filter.wgsl();
     let sampler = sampler_names(sampler).0;
     format!("shadow_{filter}(shadow_map_{name}, {sampler}, receiver)")
 }

@@ -7,7 +7,9 @@
 //! uniforms.rs      the layout that Rust and WGSL share
 //! reference.rs     the WGSL's arithmetic once more in f64
 //! texel_access.rs  gathers, or samples where a device has none
-//! bindings.rs      one bind group for a set of lights
+//! maps.rs          ShadowMaps: what every light owns; sampled_maps.rs: what a lookup needs of it
+//! report.rs        ShadowReport: what a light did in a frame
+//! bindings.rs      one bind group for a set of lights; layout.rs: the entries of it
 //! emit.rs          the WGSL for exactly that set
 //! ```
 
@@ -16,15 +18,22 @@ mod bindings;
 mod check_sampling;
 mod emit;
 mod filter;
+mod layout;
+mod maps;
 pub mod reference;
+mod report;
+mod sampled_maps;
 mod texel_access;
 mod uniforms;
 
 pub use bias::Bias;
-pub(crate) use bindings::{Receiver, Selection};
-pub use bindings::{ShadowBindings, ShadowBindingsDescriptor, ShadowSource};
+pub use bindings::{ShadowBindings, ShadowBindingsDescriptor};
 pub(crate) use check_sampling::{check_bias, check_filter, check_planar_filter};
 pub use filter::Filter;
+pub use maps::ShadowMaps;
+pub(crate) use maps::{LayerState, MapsFrame, ShadowMapsDescriptor};
+pub use report::{ShadowReport, ViewReport, ViewStatus};
+pub(crate) use sampled_maps::{SampledMaps, Selection};
 pub use uniforms::ShadowViewUniform;
 pub(crate) use uniforms::{
     Sampling, empty_view_uniform, endless_range, view_uniform, view_uniform_bytes,

@@ -4,16 +4,20 @@ use glam::Vec3;
 
 use crate::cast::{FrameCasters, Plan, Recorder, ViewDraws};
 use crate::gpu::{DepthMap, UploadBuffer, capture_device_errors};
-use crate::light::report::{ShadowReport, ViewReport, ViewStatus};
+use crate::receive::report::{ShadowReport, ViewReport, ViewStatus};
+use crate::receive::sampled_maps::{SampledMaps, Selection};
 use crate::receive::{
-    Receiver, Sampling, Selection, ShadowSource, ShadowViewUniform, empty_view_uniform,
-    endless_range, view_uniform,
+    Sampling, ShadowViewUniform, empty_view_uniform, endless_range, view_uniform,
 };
 use crate::{ShadowError, ShadowView, SliceReport};
 
-/// The common part of a light's shadows.
+/// What every light owns and what is looked up: a depth texture, a uniform buffer, and how they are to be read.
+///
+/// A light hands it out by its `maps` method. It goes into a [`ShadowBindings`](crate::ShadowBindings) and a
+/// [`DebugView`](crate::DebugView) as it is; the parts are there for engines with their own bind groups. Texture and buffer stay
+/// the same for the light's whole life, so a bind group outlives every frame.
 #[derive(Debug)]
-pub(crate) struct LightMaps {
+pub struct ShadowMaps {
     device: wgpu::Device,
     map: DepthMap,
     recorder: Recorder,
@@ -37,7 +41,7 @@ struct Memory {
 }
 
 /// What a light's maps are made of.
-pub(crate) struct LightMapsDescriptor<'a> {
+pub(crate) struct ShadowMapsDescriptor<'a> {
     pub label: &'a str,
     /// Path of the size in the caller's descriptor.
     pub size_field: &'static str,
@@ -87,10 +91,10 @@ pub(crate) struct MapsFrame<'a> {
     pub casters: FrameCasters<'a>,
 }
 
-impl LightMaps {
-    pub fn new(
+impl ShadowMaps {
+    pub(crate) fn new(
         device: &wgpu::Device,
-        descriptor: &LightMapsDescriptor<'_>,
+        descriptor: &ShadowMapsDescriptor<'_>,
     ) -> Result<Self, ShadowError> {
         let (label, layers) = (descriptor.label, descriptor.layers);
         let map = DepthMap::new(
@@ -130,77 +134,91 @@ impl LightMaps {
         })
     }
 
-    pub fn sampling(&self) -> &Sampling {
+    pub(crate) fn sampling(&self) -> &Sampling {
         &self.sampling
     }
 
+    /// Returns the depth texture, reversed: near 1, far 0; `Depth32Float`, or as a directional light's
+    /// [`DepthFormat`](crate::DepthFormat) says. It has one layer per cascade, spot or cube face (+x, -x, +y, -y, +z, -z); a
+    /// pool has those of its slots in order. It is a copy source on all backends but OpenGL.
     pub fn texture(&self) -> &wgpu::Texture {
         self.map.texture()
     }
 
+    /// Returns all layers as a `texture_depth_2d_array`. Where shaders cannot gather (OpenGL ES 3.0, WebGL 2), bind it as
+    /// `texture_2d_array<f32>` for all filters but [`Filter::Hardware`](crate::Filter::Hardware).
     pub fn texture_view(&self) -> &wgpu::TextureView {
         self.map.array_view()
     }
 
-    pub fn map_size(&self) -> u32 {
+    pub(crate) fn map_size(&self) -> u32 {
         self.map.size()
     }
 
+    /// Returns the uniform buffer, which holds one [`ShadowViewUniform`] per layer.
     pub fn uniform_buffer(&self) -> &wgpu::Buffer {
         self.uniforms.buffer()
     }
 
+    /// Returns the uniforms of the last frame, one per layer: what the uniform buffer holds.
     pub fn view_uniforms(&self) -> &[ShadowViewUniform] {
         &self.uniform_values
     }
 
+    /// Returns the views of the last frame, in the order of the frame's lights and of the layers of each; those that nothing casts
+    /// into are left out. [`ShadowView::layer`] tells which layer each is in.
     pub fn views(&self) -> impl ExactSizeIterator<Item = &ShadowView> {
         self.views.iter().map(|draws| &draws.view)
     }
 
+    /// Returns what the light did in the last frame.
     pub fn report(&self) -> &ShadowReport {
         &self.report
     }
 
-    pub fn source(&self) -> ShadowSource<'_> {
-        ShadowSource {
-            receiver: Receiver {
-                map: self.map.array_view(),
-                views: self.uniforms.buffer(),
-                view_count: self.map.layers(),
-                uniforms: &self.uniform_values,
-                sampling: self.sampling,
-                selection: self.selection,
-                views_per_light: self.views_per_light,
-                indexed: self.indexed,
-            },
+    /// Returns what a lookup needs to know of the maps.
+    pub(crate) fn sampled(&self) -> SampledMaps<'_> {
+        SampledMaps {
+            map: self.map.array_view(),
+            views: self.uniforms.buffer(),
+            view_count: self.map.layers(),
+            uniforms: &self.uniform_values,
+            sampling: self.sampling,
+            selection: self.selection,
+            views_per_light: self.views_per_light,
+            indexed: self.indexed,
         }
     }
 
-    pub fn invalidate(&mut self) {
+    /// Returns the device that the maps are on.
+    pub(crate) fn device(&self) -> &wgpu::Device {
+        &self.device
+    }
+
+    pub(crate) fn invalidate(&mut self) {
         self.recorder.invalidate();
         self.uniforms.invalidate();
     }
 
     /// An empty list of caster indices, with the memory of an earlier frame's.
-    pub fn spare_list(&mut self) -> Vec<u32> {
+    pub(crate) fn spare_list(&mut self) -> Vec<u32> {
         let mut list = self.memory.casters.pop().unwrap_or_default();
         list.clear();
         list
     }
 
     /// Takes a list back that no view needed.
-    pub fn return_list(&mut self, list: Vec<u32>) {
+    pub(crate) fn return_list(&mut self, list: Vec<u32>) {
         self.memory.casters.push(list);
     }
 
     /// An empty list of views, with the memory of an earlier frame's.
-    pub fn spare_views(&mut self) -> Vec<ViewDraws> {
+    pub(crate) fn spare_views(&mut self) -> Vec<ViewDraws> {
         std::mem::take(&mut self.memory.views)
     }
 
     /// Uploads and records a frame. On an error nothing has been recorded and nothing has changed.
-    pub fn record(
+    pub(crate) fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         frame: MapsFrame<'_>,
@@ -290,12 +308,12 @@ impl LightMaps {
     }
 
     /// Returns how many depth passes `draws` needs.
-    pub fn passes(&self, draws: &ViewDraws, casters: &FrameCasters<'_>) -> u32 {
+    pub(crate) fn passes(&self, draws: &ViewDraws, casters: &FrameCasters<'_>) -> u32 {
         self.recorder.passes(draws, casters)
     }
 
     /// Does the layer of `view` hold what was last drawn for it?
-    pub fn holds(&self, view: &ShadowView) -> bool {
+    pub(crate) fn holds(&self, view: &ShadowView) -> bool {
         self.recorder.holds(view)
     }
 }
@@ -325,55 +343,3 @@ fn view_report(draws: &ViewDraws, sampling: &Sampling, casters: &FrameCasters<'_
         slice: None,
     }
 }
-
-/// The getters that every light has, over its field `maps`.
-macro_rules! light_maps_getters {
-    ($light:ty, $view:literal) => {
-        impl $light {
-            /// Says that the maps no longer hold what was recorded ([what a kept map relies
-            /// on](crate#what-a-kept-map-relies-on)): the next frame draws every view, or of a pool under a budget as many as it
-            /// allows, and the rest is lit until its turn.
-            pub fn invalidate(&mut self) {
-                self.maps.invalidate();
-            }
-
-            /// What [`ShadowBindings`](crate::ShadowBindings) and [`DebugView`](crate::DebugView) need of this light.
-            pub fn source(&self) -> crate::ShadowSource<'_> {
-                self.maps.source()
-            }
-
-            /// Returns the views of the last frame, in the order of the frame's lights and of the layers of each; those that
-            /// nothing casts into are left out. [`ShadowView::layer`](crate::ShadowView::layer) tells which layer each is in.
-            pub fn views(&self) -> impl ExactSizeIterator<Item = &crate::ShadowView> {
-                self.maps.views()
-            }
-
-            #[doc = concat!("Uniforms of the last frame, one per ", $view, ": what the uniform buffer holds.")]
-            pub fn view_uniforms(&self) -> &[crate::ShadowViewUniform] {
-                self.maps.view_uniforms()
-            }
-
-            #[doc = concat!("The depth texture, reversed: near 1, far 0; `Depth32Float`, or as a directional light's [`DepthFormat`](crate::DepthFormat) says. One layer per ", $view, ". A copy source on all backends but OpenGL.")]
-            pub fn texture(&self) -> &wgpu::Texture {
-                self.maps.texture()
-            }
-
-            /// All layers as a `texture_depth_2d_array`.
-            pub fn texture_view(&self) -> &wgpu::TextureView {
-                self.maps.texture_view()
-            }
-
-            #[doc = concat!("Uniform buffer with one [`ShadowViewUniform`](crate::ShadowViewUniform) per ", $view, ".")]
-            pub fn uniform_buffer(&self) -> &wgpu::Buffer {
-                self.maps.uniform_buffer()
-            }
-
-            /// What the last frame did.
-            pub fn report(&self) -> &crate::ShadowReport {
-                self.maps.report()
-            }
-        }
-    };
-}
-
-pub(crate) use light_maps_getters;
