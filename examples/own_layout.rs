@@ -70,10 +70,10 @@ fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
     let sampler = gpu.device.create_sampler(&Default::default());
     let resources = [
         wgpu::BindingResource::Sampler(&sampler),
-        wgpu::BindingResource::TextureView(sun.texture_view()),
-        sun.uniform_buffer().as_entire_binding(),
-        wgpu::BindingResource::TextureView(lamp.texture_view()),
-        lamp.uniform_buffer().as_entire_binding(),
+        wgpu::BindingResource::TextureView(sun.maps().texture_view()),
+        sun.maps().uniform_buffer().as_entire_binding(),
+        wgpu::BindingResource::TextureView(lamp.maps().texture_view()),
+        lamp.maps().uniform_buffer().as_entire_binding(),
     ];
     let entries: Vec<_> = (0..)
         .zip(resources)

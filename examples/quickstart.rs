@@ -87,7 +87,7 @@ fn draw(engine: &Engine, path: &Path) -> Result<(), Box<dyn Error>> {
     let bindings = ShadowBindings::new(
         device,
         &ShadowBindingsDescriptor {
-            lights: &[("sun", sun.source())],
+            lights: &[("sun", sun.maps())],
             ..Default::default()
         },
     )?;

@@ -82,7 +82,13 @@ pub fn culling(stage: &Stage<'_>, most: u32) {
         let frame = stage::frame(&list, Coverage::Cameras(&cameras));
         let drawn = stage.record_effort(&mut sun, &frame, true);
         let kept = stage.record_effort(&mut sun, &frame, false);
-        let in_views = sun.shadow.report().views.iter().map(|view| view.casters);
+        let in_views = sun
+            .shadow
+            .maps()
+            .report()
+            .views
+            .iter()
+            .map(|view| view.casters);
         let in_views: u32 = in_views.sum();
         let descriptor = OmniShadowDescriptor {
             map_size: 64,

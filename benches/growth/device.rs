@@ -40,7 +40,7 @@ pub fn cascades(stage: &Stage<'_>) {
             [
                 effort.microseconds,
                 effort.allocations,
-                f64::from(sun.shadow.report().draws()),
+                f64::from(sun.shadow.maps().report().draws()),
                 ratio.median,
             ],
         );
@@ -71,7 +71,7 @@ pub fn map_sizes(stage: &Stage<'_>, largest: u32) {
             |encoder| sun.record_anew(encoder, &frame),
             |encoder| smallest.record_anew(encoder, &frame),
         );
-        let bytes_held = sun.shadow.report().bytes_held;
+        let bytes_held = sun.shadow.maps().report().bytes_held;
         table.add(f64::from(size), [ratio.median, bytes_held as f64]);
     }
     table.print();
@@ -152,7 +152,7 @@ pub fn bare_minimum(stage: &Stage<'_>) {
             sun.record_anew(&mut encoder, &frame);
             encoder
         });
-        let view = sun.shadow.views().next().expect("boxes cast");
+        let view = sun.shadow.maps().views().next().expect("boxes cast");
         // The bare pass clears to 1 and keeps the least depth: the same picture with its depth turned around.
         let turned = DMat4::from_cols(
             DVec4::X,

@@ -165,7 +165,7 @@ impl Lamp {
     }
 
     fn report(&self) -> &ShadowReport {
-        self.shadow.report()
+        self.shadow.maps().report()
     }
 }
 

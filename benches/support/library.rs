@@ -102,9 +102,9 @@ impl<'a> LibraryTechnique<'a> {
     ) -> Result<Self, Box<dyn Error>> {
         let shadow = create_shadow(&gpu.device, scene, &options)?;
         let source = match &shadow {
-            Shadow::Sun(sun) => sun.source(),
-            Shadow::Spot(spot) => spot.source(),
-            Shadow::Point(point) => point.source(),
+            Shadow::Sun(sun) => sun.maps(),
+            Shadow::Spot(spot) => spot.maps(),
+            Shadow::Point(point) => point.maps(),
         };
         let bindings = ShadowBindings::new(
             &gpu.device,
@@ -239,9 +239,9 @@ impl Technique for LibraryTechnique<'_> {
 
     fn footprint(&self) -> Footprint {
         match &self.shadow {
-            Shadow::Sun(sun) => Footprint::of_views(sun.views()),
-            Shadow::Spot(spot) => Footprint::of_views(spot.views()),
-            Shadow::Point(point) => Footprint::of_views(point.views()),
+            Shadow::Sun(sun) => Footprint::of_views(sun.maps().views()),
+            Shadow::Spot(spot) => Footprint::of_views(spot.maps().views()),
+            Shadow::Point(point) => Footprint::of_views(point.maps().views()),
         }
     }
 

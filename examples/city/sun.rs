@@ -65,7 +65,7 @@ impl Sun {
         let bindings = ShadowBindings::new(
             &gpu.device,
             &ShadowBindingsDescriptor {
-                lights: &[("sun", shadow.source())],
+                lights: &[("sun", shadow.maps())],
                 ..Default::default()
             },
         )?;
@@ -96,7 +96,7 @@ impl Sun {
 
     /// What the last frame cost.
     pub fn report(&self) -> &ShadowReport {
-        self.shadow.report()
+        self.shadow.maps().report()
     }
 
     /// Time on the CPU of the last frame's shadows: checks, fit, cull, and the recording of the passes.
@@ -179,7 +179,7 @@ impl Sun {
     ) -> Result<Vec<u8>, Box<dyn Error>> {
         let encoder = gpu.device.create_command_encoder(&Default::default());
         let layer = DebugPicture::Layer(layer);
-        map_picture::draw(gpu, encoder, self.shadow.source(), layer, size)
+        map_picture::draw(gpu, encoder, self.shadow.maps(), layer, size)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use wgpu_shadows::{DebugPicture, DebugView, ShadowSource};
+use wgpu_shadows::{DebugPicture, DebugView, ShadowMaps};
 
 use super::gpu::Gpu;
 
@@ -12,7 +12,7 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 pub fn draw(
     gpu: &Gpu,
     mut encoder: wgpu::CommandEncoder,
-    source: ShadowSource<'_>,
+    source: &ShadowMaps,
     what: DebugPicture,
     size: [u32; 2],
 ) -> Result<Vec<u8>, Box<dyn Error>> {
@@ -28,7 +28,7 @@ pub fn draw(
         ..Default::default()
     });
     let debug_view = DebugView::new(&gpu.device, FORMAT)?;
-    debug_view.draw(&gpu.device, &mut pass, source, what)?;
+    debug_view.draw(&mut pass, source, what)?;
     drop(pass);
     gpu.read(encoder, &target)
 }

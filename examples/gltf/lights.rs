@@ -5,7 +5,7 @@ use std::fmt::Write;
 use wgpu_shadows::{
     Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniLight,
     OmniShadowPool, PoolDescriptor, PoolLight, ShadowBindings, ShadowBindingsDescriptor,
-    ShadowCaster, ShadowFrameDescriptor, ShadowReport, ShadowScene, ShadowSlot, ShadowSource,
+    ShadowCaster, ShadowFrameDescriptor, ShadowMaps, ShadowReport, ShadowScene, ShadowSlot,
     SpotLight, SpotShadowPool,
 };
 
@@ -37,19 +37,19 @@ enum Maps {
 }
 
 impl Maps {
-    fn source(&self) -> ShadowSource<'_> {
+    fn source(&self) -> &ShadowMaps {
         match self {
-            Self::Sun { shadow, .. } => shadow.source(),
-            Self::Spots { pool, .. } => pool.source(),
-            Self::Lamps { pool, .. } => pool.source(),
+            Self::Sun { shadow, .. } => shadow.maps(),
+            Self::Spots { pool, .. } => pool.maps(),
+            Self::Lamps { pool, .. } => pool.maps(),
         }
     }
 
     fn report(&self) -> &ShadowReport {
         match self {
-            Self::Sun { shadow, .. } => shadow.report(),
-            Self::Spots { pool, .. } => pool.report(),
-            Self::Lamps { pool, .. } => pool.report(),
+            Self::Sun { shadow, .. } => shadow.maps().report(),
+            Self::Spots { pool, .. } => pool.maps().report(),
+            Self::Lamps { pool, .. } => pool.maps().report(),
         }
     }
 
@@ -109,7 +109,7 @@ impl SceneLights {
         } else {
             make_maps(gpu, &lights, options)?
         };
-        let sources: Vec<(&str, ShadowSource<'_>)> = maps
+        let sources: Vec<(&str, &ShadowMaps)> = maps
             .iter()
             .map(|(name, maps)| (name.as_str(), maps.source()))
             .collect();

@@ -51,9 +51,9 @@ impl Shadows {
             device,
             &ShadowBindingsDescriptor {
                 lights: &[
-                    ("sun", sun.source()),
-                    ("spots", spots.source()),
-                    ("lamps", lamps.source()),
+                    ("sun", sun.maps()),
+                    ("spots", spots.maps()),
+                    ("lamps", lamps.maps()),
                 ],
                 ..Default::default()
             },
@@ -127,9 +127,9 @@ impl Shadows {
     /// Each set of maps: its name, its report, views per light, and which of its lights move (none for a sun that does not).
     pub fn reports(&self) -> [(&str, &ShadowReport, usize, &[bool]); 3] {
         [
-            ("sun", self.sun.report(), 1, &[]),
-            ("spots", self.spots.report(), 1, &self.moving_spots),
-            ("lamps", self.lamps.report(), 6, &self.moving_lamps),
+            ("sun", self.sun.maps().report(), 1, &[]),
+            ("spots", self.spots.maps().report(), 1, &self.moving_spots),
+            ("lamps", self.lamps.maps().report(), 6, &self.moving_lamps),
         ]
     }
 }

@@ -45,7 +45,7 @@ impl Lamp {
         let bindings = ShadowBindings::new(
             &gpu.device,
             &ShadowBindingsDescriptor {
-                lights: &[("lamp", shadow.source())],
+                lights: &[("lamp", shadow.maps())],
                 ..Default::default()
             },
         )?;
@@ -71,7 +71,7 @@ impl Lamp {
 
     /// What the last frame cost.
     pub fn report(&self) -> &ShadowReport {
-        self.shadow.report()
+        self.shadow.maps().report()
     }
 
     /// The picture of the room with the lamp at `place`: depth passes of what the camera needs, then the scene.
@@ -133,7 +133,7 @@ impl Lamp {
         size: [u32; 2],
     ) -> Result<Vec<u8>, Box<dyn Error>> {
         let encoder = gpu.device.create_command_encoder(&Default::default());
-        map_picture::draw(gpu, encoder, self.shadow.source(), picture, size)
+        map_picture::draw(gpu, encoder, self.shadow.maps(), picture, size)
     }
 
     fn record(

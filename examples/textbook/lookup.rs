@@ -24,7 +24,7 @@ impl Lookup {
             device,
             &ShadowBindingsDescriptor {
                 group: GROUP,
-                lights: &[("sun", sun.source())],
+                lights: &[("sun", sun.maps())],
                 ..Default::default()
             },
         )?;
@@ -76,11 +76,11 @@ impl Lookup {
             entries: &[
                 wgpu::BindGroupEntry {
                     binding: 0,
-                    resource: sun.uniform_buffer().as_entire_binding(),
+                    resource: sun.maps().uniform_buffer().as_entire_binding(),
                 },
                 wgpu::BindGroupEntry {
                     binding: 1,
-                    resource: wgpu::BindingResource::TextureView(sun.texture_view()),
+                    resource: wgpu::BindingResource::TextureView(sun.maps().texture_view()),
                 },
                 wgpu::BindGroupEntry {
                     binding: 2,

@@ -109,10 +109,10 @@ fn draw_map(
     encoder: wgpu::CommandEncoder,
     path: &Path,
 ) -> Result<String, Box<dyn Error>> {
-    let view = sun.views().next().ok_or("nothing casts a shadow")?;
+    let view = sun.maps().views().next().ok_or("nothing casts a shadow")?;
     let size = [view.map_size(); 2];
     let layer = DebugPicture::Layer(view.layer());
-    let pixels = map_picture::draw(gpu, encoder, sun.source(), layer, size)?;
+    let pixels = map_picture::draw(gpu, encoder, sun.maps(), layer, size)?;
     picture::save(path, &pixels, size)?;
     let wrong = 100.0 * truth::compare_map(scene, view, &pixels);
     Ok(format!(

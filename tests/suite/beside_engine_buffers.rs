@@ -190,7 +190,7 @@ fn own_light(position: vec3<f32>, normal: vec3<f32>) -> f32 {{
             resource: if binding < before {
                 zero.as_entire_binding()
             } else {
-                light.uniform_buffer().as_entire_binding()
+                light.maps().uniform_buffer().as_entire_binding()
             },
         })
         .collect();
@@ -205,7 +205,7 @@ fn own_light(position: vec3<f32>, normal: vec3<f32>) -> f32 {{
         entries: &[
             wgpu::BindGroupEntry {
                 binding: 0,
-                resource: wgpu::BindingResource::TextureView(light.texture_view()),
+                resource: wgpu::BindingResource::TextureView(light.maps().texture_view()),
             },
             wgpu::BindGroupEntry {
                 binding: 1,

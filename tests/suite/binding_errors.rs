@@ -26,7 +26,7 @@ fn light_names_that_are_no_identifiers() {
     let gpu = gpu();
     let sun = tiny_sun(gpu, 1);
     let bind = |names: &[&str]| {
-        let lights: Vec<_> = names.iter().map(|name| (*name, sun.source())).collect();
+        let lights: Vec<_> = names.iter().map(|name| (*name, sun.maps())).collect();
         let descriptor = ShadowBindingsDescriptor {
             lights: &lights,
             ..Default::default()
@@ -96,7 +96,7 @@ fn light_names_that_meet_others() {
     ];
     let mut failures = Vec::new();
     for names in sets {
-        let lights: Vec<_> = names.iter().map(|name| (*name, sun.source())).collect();
+        let lights: Vec<_> = names.iter().map(|name| (*name, sun.maps())).collect();
         let descriptor = ShadowBindingsDescriptor {
             lights: &lights,
             ..Default::default()
@@ -125,7 +125,7 @@ fn bindings_beyond_the_devices_limits() {
         ShadowBindings::new(&gpu.device, &descriptor).map(|_| ())
     };
     let (group, maximum) = (limits.max_bind_groups, limits.max_bind_groups);
-    let error = bind(group, &[("sun", sun.source())]).expect_err("a group");
+    let error = bind(group, &[("sun", sun.maps())]).expect_err("a group");
     assert_eq!(error, BindingsError::Group { group, maximum });
     let message = "ShadowBindingsDescriptor::group must be below the device's max_bind_groups = ";
     assert_eq!(
@@ -141,7 +141,7 @@ fn bindings_beyond_the_devices_limits() {
         .collect();
     let lights: Vec<_> = names
         .iter()
-        .map(|name| (name.as_str(), sun.source()))
+        .map(|name| (name.as_str(), sun.maps()))
         .collect();
     assert_eq!(bind(1, &lights[..most]), Ok(()));
     let (needed, maximum) = (most as u64 + 1, most as u64);
@@ -190,7 +190,7 @@ fn debug_views_that_cannot_be_drawn() {
     let mut encoder = gpu.encoder();
     {
         let mut pass = color_pass(&mut encoder, &target);
-        let mut draw = |picture| view.draw(&gpu.device, &mut pass, sun.source(), picture);
+        let mut draw = |picture| view.draw(&mut pass, sun.maps(), picture);
         let error = draw(DebugPicture::Layer(2)).expect_err("no layer");
         assert_eq!(
             error,

@@ -92,6 +92,7 @@ fn no_border_is_a_step() {
     let lines = lines(step);
     let (shadow, probe) = sun(0.2);
     let finest = shadow
+        .maps()
         .views()
         .map(|view| view.texel_size_world().min_element())
         .fold(f32::INFINITY, f32::min);
@@ -113,7 +114,7 @@ fn no_border_is_a_step() {
 fn the_mean_is_the_twins() {
     let (shadow, probe) = sun(0.2);
     let layers: Vec<_> = (0..3)
-        .map(|layer| readback::depth_layer(gpu(), shadow.texture(), layer))
+        .map(|layer| readback::depth_layer(gpu(), shadow.maps().texture(), layer))
         .collect();
     let (mut mixed, mut all) = (0, 0);
     for line in lines(0.05) {
@@ -121,7 +122,7 @@ fn the_mean_is_the_twins() {
             let place = Vec3::from_array(point.position).as_dvec3();
             let (mut lit, mut share) = (0.0, 0.0);
             let mut parts = 0;
-            for (view, depths) in shadow.view_uniforms().iter().zip(&layers) {
+            for (view, depths) in shadow.maps().view_uniforms().iter().zip(&layers) {
                 if share < 1.0 && reference::holds(view, place) {
                     let map = DepthLayer {
                         size: MAP_SIZE,
@@ -164,7 +165,7 @@ fn only_cascades_that_blend_have_weights() {
         let bindings = ShadowBindings::new(
             &gpu().device,
             &ShadowBindingsDescriptor {
-                lights: &[("sun", shadow.source())],
+                lights: &[("sun", shadow.maps())],
                 ..Default::default()
             },
         )

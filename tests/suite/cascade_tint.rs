@@ -80,9 +80,8 @@ fn tint(gpu: &Gpu, shadow: &DirectionalShadow, camera: &Camera, depth: f32) -> i
     drop(cleared(&mut encoder, None, Some((&depth_view, depth))));
     let mut pass = cleared(&mut encoder, Some(&target_view), None);
     view.draw_cascades(
-        &gpu.device,
         &mut pass,
-        shadow.source(),
+        shadow.maps(),
         &depth_view,
         clip_from_render.inverse().as_mat4(),
     )
@@ -138,7 +137,7 @@ fn pixels_have_the_colours_of_their_cascades() {
             let place = render_from_clip * DVec4::new(ndc(x), -ndc(y), f64::from(depth), 1.0);
             let place = place.truncate() / place.w;
             let serving = |place: DVec3| {
-                let mut views = shadow.view_uniforms().iter();
+                let mut views = shadow.maps().view_uniforms().iter();
                 views
                     .position(|view| reference::holds(view, place))
                     .unwrap_or(3)
@@ -192,13 +191,7 @@ fn what_cannot_be_tinted_is_refused() {
     let mut encoder = gpu.encoder();
     let mut pass = cleared(&mut encoder, Some(&target_view), None);
     let mut draw = |view: &DebugView, depth| {
-        view.draw_cascades(
-            &gpu.device,
-            &mut pass,
-            shadow.source(),
-            depth,
-            Mat4::IDENTITY,
-        )
+        view.draw_cascades(&mut pass, shadow.maps(), depth, Mat4::IDENTITY)
     };
     let refused = draw(&unblendable, &target_view).expect_err("no blending");
     assert!(

@@ -48,7 +48,7 @@ fn depths(gpu: &Gpu, caster: &dyn ShadowCaster) -> Vec<f32> {
         receivers: &[],
     };
     assert_eq!(record(gpu, &mut shadow, &frame).draws(), 1);
-    readback::depth_layer(gpu, shadow.texture(), 0)
+    readback::depth_layer(gpu, shadow.maps().texture(), 0)
 }
 
 fn drawn(depths: &[f32]) -> usize {

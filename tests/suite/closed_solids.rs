@@ -170,8 +170,8 @@ fn back_faces_of_solids_change_no_map() {
         lamp.record_frame(&mut encoder, &frame)
             .expect("a valid frame");
         gpu.submit(encoder);
-        let mut layers = vec![readback::depth_layer(gpu, sun.texture(), 0)];
-        layers.extend((0..6).map(|face| readback::depth_layer(gpu, lamp.texture(), face)));
+        let mut layers = vec![readback::depth_layer(gpu, sun.maps().texture(), 0)];
+        layers.extend((0..6).map(|face| readback::depth_layer(gpu, lamp.maps().texture(), face)));
         layers
     });
     let covered = maps[0]

@@ -48,7 +48,7 @@ fn slab(gpu: &Gpu, pipeline: &CasterPipeline, x: f32) -> MeshCaster {
 fn fresh_map(gpu: &Gpu, casters: &[&dyn ShadowCaster]) -> Vec<f32> {
     let mut shadow = sun(gpu);
     record(gpu, &mut shadow, &frame(casters));
-    readback::depth_layer(gpu, shadow.texture(), 0)
+    readback::depth_layer(gpu, shadow.maps().texture(), 0)
 }
 
 /// Fails with a number and not with two maps.
@@ -111,7 +111,7 @@ fn casters_that_change_their_mind() {
         gpu.submit(encoder);
         match result {
             Ok(_) => {
-                let map = readback::depth_layer(gpu, shadow.texture(), 0);
+                let map = readback::depth_layer(gpu, shadow.maps().texture(), 0);
                 assert_same(&map, &wanted, "a fickle caster");
                 complete += 1;
             }
@@ -238,7 +238,7 @@ fn a_caster_that_panics_leaves_nothing_behind() {
     panicking.1.set(false);
     let report = record(gpu, &mut shadow, &frame(&list));
     assert_eq!(report.views[0].status, ViewStatus::Drawn);
-    let map = readback::depth_layer(gpu, shadow.texture(), 0);
+    let map = readback::depth_layer(gpu, shadow.maps().texture(), 0);
     assert_same(&map, &fresh_map(gpu, &list), "after a panic");
     let report = record(gpu, &mut shadow, &frame(&list));
     assert_eq!(report.views[0].status, ViewStatus::Kept);
@@ -421,8 +421,8 @@ fn two_frames_before_one_submission() {
             .expect("a valid frame");
     }
     gpu.submit(encoder);
-    let first = readback::depth_layer(gpu, suns[0].texture(), 0);
+    let first = readback::depth_layer(gpu, suns[0].maps().texture(), 0);
     assert_same(&first, &wanted, "the first of two frames");
-    let second = readback::depth_layer(gpu, suns[1].texture(), 0);
+    let second = readback::depth_layer(gpu, suns[1].maps().texture(), 0);
     assert_same(&second, &fresh_map(gpu, &[&mesh]), "the second");
 }

@@ -21,7 +21,7 @@ fn one_pass_gives_the_depths_of_a_pass_each() {
     ] {
         let mut pair = Pair::new(&meshes);
         assert_eq!(
-            pair.one.shadow.texture().format(),
+            pair.one.shadow.maps().texture().format(),
             wgpu::TextureFormat::Depth32Float
         );
         // In the middle, near a wall, and on an axis of a vertex.

@@ -6,7 +6,7 @@ use image::RgbaImage;
 use wgpu_shadows::{
     Aabb, DebugPicture, DebugView, DebugViewError, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, OmniLight, OmniShadow, OmniShadowDescriptor, OmniShadowPool,
-    PoolDescriptor, PoolLight, ShadowSource, SpotLight, SpotShadow, SpotShadowDescriptor,
+    PoolDescriptor, PoolLight, ShadowMaps, SpotLight, SpotShadow, SpotShadowDescriptor,
 };
 
 use crate::support::ask::{record_omni, record_spot, submitted};
@@ -22,7 +22,7 @@ use crate::support::scene::{Mesh, Scene};
 /// Draws into the upper left `width` by `height` pixels of a square target.
 fn picture(
     gpu: &Gpu,
-    source: ShadowSource<'_>,
+    source: &ShadowMaps,
     picture: DebugPicture,
     [width, height]: [u32; 2],
 ) -> Result<RgbaImage, DebugViewError> {
@@ -31,7 +31,7 @@ fn picture(
     let mut encoder = gpu.encoder();
     let mut pass = color_pass(&mut encoder, &target);
     pass.set_viewport(0.0, 0.0, width as f32, height as f32, 0.0, 1.0);
-    let drawn = view.draw(&gpu.device, &mut pass, source, picture);
+    let drawn = view.draw(&mut pass, source, picture);
     drop(pass);
     gpu.submit(encoder);
     drawn.map(|()| readback::rgba8(gpu, &target))
@@ -69,14 +69,14 @@ fn sun() -> (DirectionalShadow, Vec<f32>) {
         receivers: &[],
     };
     record(gpu, &mut shadow, &frame);
-    let depths = readback::depth_layer(gpu, shadow.texture(), 0);
+    let depths = readback::depth_layer(gpu, shadow.maps().texture(), 0);
     (shadow, depths)
 }
 
 #[test]
 fn a_sun_shows_its_depth() {
     let (shadow, depths) = sun();
-    let layer = picture(gpu(), shadow.source(), DebugPicture::Layer(0), [MAP; 2]);
+    let layer = picture(gpu(), shadow.maps(), DebugPicture::Layer(0), [MAP; 2]);
     let image = layer.expect("a layer of the map");
     for (index, depth) in (0..).zip(&depths) {
         let pixel = [index % MAP, index / MAP];
@@ -85,7 +85,7 @@ fn a_sun_shows_its_depth() {
     let steps = depths.iter().map(|depth| (depth * 255.0) as u32);
     assert!(steps.collect::<std::collections::BTreeSet<_>>().len() > 20);
     // The second cascade holds nothing.
-    let empty = picture(gpu(), shadow.source(), DebugPicture::Layer(1), [MAP; 2]);
+    let empty = picture(gpu(), shadow.maps(), DebugPicture::Layer(1), [MAP; 2]);
     let empty = empty.expect("a layer of the map");
     assert!(empty.pixels().all(|pixel| pixel.0 == [255; 4]));
 }
@@ -114,9 +114,9 @@ fn a_spot_shows_distances() {
         receivers: &[Aabb::new(Vec3::splat(-9.0), Vec3::splat(9.0))],
     };
     record_spot(gpu, &mut shadow, &frame).expect("a valid frame");
-    let layer = picture(gpu, shadow.source(), DebugPicture::Layer(0), [MAP; 2]);
+    let layer = picture(gpu, shadow.maps(), DebugPicture::Layer(0), [MAP; 2]);
     let image = layer.expect("a layer of the map");
-    let view = shadow.views().next().expect("a view");
+    let view = shadow.maps().views().next().expect("a view");
     let anchor_from_clip = view.clip_from_anchor().as_dmat4().inverse();
     let mut drawn = 0;
     for y in 0..MAP {
@@ -213,7 +213,7 @@ fn pixel(cell: [f32; 2]) -> [u32; 2] {
 fn a_cross_shows_the_walls_of_a_room() {
     let gpu = gpu();
     let shadow = lamp(gpu);
-    let image = picture(gpu, shadow.source(), DebugPicture::Cross, CROSS).expect("a cube");
+    let image = picture(gpu, shadow.maps(), DebugPicture::Cross, CROSS).expect("a cube");
     for (wall, cell) in WALLS.into_iter().zip(CELLS) {
         // Straight ahead; the middle of an odd cell is the middle of a pixel, and half a texel from a texel's own.
         assert_grey(&image, pixel(cell), f64::from(wall / RANGE), "wall");
@@ -246,7 +246,7 @@ fn a_cross_shows_the_walls_of_a_room() {
 fn a_pool_shows_one_of_its_lights() {
     let gpu = gpu();
     let alone = lamp(gpu);
-    let wanted = picture(gpu, alone.source(), DebugPicture::Cross, CROSS).expect("a cube");
+    let wanted = picture(gpu, alone.maps(), DebugPicture::Cross, CROSS).expect("a cube");
     let descriptor = PoolDescriptor {
         capacity: 3,
         map_size: 256,
@@ -270,7 +270,7 @@ fn a_pool_shows_one_of_its_lights() {
         max_views: None,
     };
     submitted(gpu, |encoder| pool.record_frame(encoder, &frame)).expect("a valid frame");
-    let draw = |what| picture(gpu, pool.source(), what, CROSS);
+    let draw = |what| picture(gpu, pool.maps(), what, CROSS);
     assert!(draw(DebugPicture::PoolCross(1)).expect("a light") == wanted);
     // A slot without a light is white all over its cells.
     let empty = draw(DebugPicture::PoolCross(0)).expect("a slot");
@@ -290,7 +290,7 @@ fn a_pool_shows_one_of_its_lights() {
 fn what_cannot_be_drawn_is_refused() {
     let gpu = gpu();
     let (shadow, _) = sun();
-    let draw = |what| picture(gpu, shadow.source(), what, [8; 2]);
+    let draw = |what| picture(gpu, shadow.maps(), what, [8; 2]);
     for layer in [2, 3, u32::MAX] {
         let refused = draw(DebugPicture::Layer(layer));
         assert_eq!(

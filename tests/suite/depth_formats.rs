@@ -58,9 +58,9 @@ fn sixteen_bits_hold_the_same_depths_to_a_step() {
     let mut found = Vec::new();
     for format in [DepthFormat::Float32, DepthFormat::Unorm16] {
         let mut shadow = sun(gpu, format);
-        assert_eq!(shadow.texture().format(), format.texture_format());
+        assert_eq!(shadow.maps().texture().format(), format.texture_format());
         let report = record(gpu, &mut shadow, &frame(&casters));
-        let depths = readback::depth_layer(gpu, shadow.texture(), 0);
+        let depths = readback::depth_layer(gpu, shadow.maps().texture(), 0);
         let points: Vec<_> = (0..400)
             .map(|index| {
                 let (column, row) = (index % 20, index / 20);

@@ -58,7 +58,7 @@ impl Sheet {
             receivers: &[],
         };
         record(gpu, shadow, &frame);
-        let view = shadow.view_uniforms()[0];
+        let view = shadow.maps().view_uniforms()[0];
         let texel_from_anchor: DMat4 = Mat4::from_cols_array_2d(&view.texel_from_anchor).as_dmat4();
         let anchor = Vec3::from_array(view.anchor).as_dvec3();
         let corners = self.scene.triangles[0].0;
@@ -67,7 +67,7 @@ impl Sheet {
         let gradient = DVec2::new(-normal.x / normal.z, -normal.y / normal.z);
         let steep = gradient.abs().element_sum();
         let allowed = f64::from(view.depth_error) + f64::from(view.lateral_error) * steep;
-        let depths = readback::depth_layer(gpu, shadow.texture(), 0);
+        let depths = readback::depth_layer(gpu, shadow.maps().texture(), 0);
         let (mut worst, mut count) = (0.0_f64, 0);
         for (index, stored) in (0_u32..).zip(depths).filter(|(_, stored)| *stored > 0.0) {
             let texel = DVec2::new(f64::from(index % MAP_SIZE), f64::from(index / MAP_SIZE)) + 0.5;

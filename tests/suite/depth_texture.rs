@@ -29,7 +29,7 @@ fn the_texture_can_be_copied() {
         receivers: &[],
     };
     let report = record(gpu, &mut shadow, &frame);
-    let texture = shadow.texture();
+    let texture = shadow.maps().texture();
     assert_eq!(texture.format(), wgpu::TextureFormat::Depth32Float);
     assert_eq!((texture.width(), texture.height()), (SIZE, SIZE));
     assert_eq!(texture.depth_or_array_layers(), 2);

@@ -136,9 +136,9 @@ fn all(gpu: &Gpu, what: &str) -> usize {
     let lights: Vec<_> = suns
         .iter()
         .flatten()
-        .map(DirectionalShadow::source)
-        .chain(omni.as_ref().map(OmniShadow::source))
-        .chain(spot.as_ref().map(SpotShadow::source))
+        .map(DirectionalShadow::maps)
+        .chain(omni.as_ref().map(OmniShadow::maps))
+        .chain(spot.as_ref().map(SpotShadow::maps))
         .collect();
     let names = ["a", "b", "c", "d", "e"];
     for count in 1..=lights.len() {
@@ -156,7 +156,7 @@ fn all(gpu: &Gpu, what: &str) -> usize {
         {
             let mut pass = color_pass(&mut encoder, &target);
             for light in &lights {
-                view.draw(device, &mut pass, *light, DebugPicture::Layer(0))
+                view.draw(&mut pass, light, DebugPicture::Layer(0))
                     .expect("a picture");
             }
         }
@@ -302,7 +302,7 @@ fn uniforms_larger_than_the_device_binds() {
     let other = device(|_| ());
     let sun = DirectionalShadow::new(&other.device, &sun_descriptor(5)).expect("five views");
     let descriptor = ShadowBindingsDescriptor {
-        lights: &[("sun", sun.source())],
+        lights: &[("sun", sun.maps())],
         ..Default::default()
     };
     let error = ShadowBindings::new(&gpu.device, &descriptor).expect_err("five views");

@@ -66,7 +66,7 @@ fn pool() -> PoolDescriptor<'static> {
 
 fn bindings(gpu: &Gpu, sun: &DirectionalShadow) -> Result<ShadowBindings, BindingsError> {
     let descriptor = ShadowBindingsDescriptor {
-        lights: &[("sun", sun.source())],
+        lights: &[("sun", sun.maps())],
         ..Default::default()
     };
     ShadowBindings::new(&gpu.device, &descriptor)
@@ -234,11 +234,15 @@ fn a_lost_device_makes_nothing() {
         };
         assert_eq!(error, Some(wanted));
     }
-    assert_eq!(all.sun.views().len(), 0, "the last good state is kept");
+    assert_eq!(
+        all.sun.maps().views().len(),
+        0,
+        "the last good state is kept"
+    );
     let mut encoder = lost.encoder();
     let mut pass = color_pass(&mut encoder, &target);
     let picture = DebugPicture::Layer(0);
-    let error = all.view.draw(device, &mut pass, all.sun.source(), picture);
+    let error = all.view.draw(&mut pass, all.sun.maps(), picture);
     let wanted = DebugViewError::Device {
         object: "the bind group of a debug view",
         refusal,
@@ -310,7 +314,7 @@ fn a_light_of_another_device_is_refused() {
     {
         let mut pass = color_pass(&mut encoder, &target);
         let picture = DebugPicture::Layer(0);
-        let error = view.draw(&there.device, &mut pass, all.sun.source(), picture);
+        let error = view.draw(&mut pass, all.sun.maps(), picture);
         assert!(
             matches!(
                 error,

@@ -159,7 +159,7 @@ fn compare(filter: Filter, bias: Bias, with_camera: bool) {
         ..Default::default()
     };
     let mut shadow = OmniShadow::new(&gpu.device, &descriptor).expect("a valid lamp");
-    let ask = Ask::light(gpu, shadow.source());
+    let ask = Ask::light(gpu, shadow.maps());
     // So wide that every face is seen; it stands for the viewer's place alone.
     let eye = DVec3::new(3.5, 3.0, 3.5);
     let camera = Camera::modern(eye, DVec3::new(-1.0, -1.0, -1.0), 2.6, 1.0).view();
@@ -176,11 +176,11 @@ fn compare(filter: Filter, bias: Bias, with_camera: bool) {
     let report = record_omni(gpu, &mut shadow, &frame).expect("a valid frame");
     assert_eq!(report.passes, 6);
     // The eye as the uniform has it.
-    let viewer = Vec3::from_slice(&shadow.view_uniforms()[0].viewer[..3]).as_dvec3();
+    let viewer = Vec3::from_slice(&shadow.maps().view_uniforms()[0].viewer[..3]).as_dvec3();
     let twin = Twin {
-        uniforms: shadow.view_uniforms().to_vec(),
+        uniforms: shadow.maps().view_uniforms().to_vec(),
         faces: (0..6)
-            .map(|layer| readback::depth_layer(gpu, shadow.texture(), layer))
+            .map(|layer| readback::depth_layer(gpu, shadow.maps().texture(), layer))
             .collect(),
         filter,
         bias,

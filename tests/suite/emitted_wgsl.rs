@@ -1,6 +1,6 @@
 //! What `ShadowBindings` emits, for every kind of light, every filter and every bias, alone and in company.
 
-use wgpu_shadows::{Bias, Filter, ShadowBindings, ShadowBindingsDescriptor, ShadowSource};
+use wgpu_shadows::{Bias, Filter, ShadowBindings, ShadowBindingsDescriptor, ShadowMaps};
 
 use crate::support::gpu::gpu;
 use crate::support::lights::{Kind, Light};
@@ -48,7 +48,7 @@ fn every_way(kind: Kind) -> Vec<Named> {
         .collect()
 }
 
-fn emitted(group: u32, lights: &[(&str, ShadowSource<'_>)]) -> String {
+fn emitted(group: u32, lights: &[(&str, &ShadowMaps)]) -> String {
     let descriptor = ShadowBindingsDescriptor {
         group,
         lights,
@@ -128,7 +128,7 @@ fn one_light_validates_in_every_group() {
     let mut failures = Vec::new();
     for light in Kind::ALL.into_iter().flat_map(every_way) {
         for group in 0..=3 {
-            let text = emitted(group, &[("lamp", light.light.source())]);
+            let text = emitted(group, &[("lamp", light.light.maps())]);
             if let Err(error) = check(&text, group, &[("lamp", light.kind)]) {
                 failures.push(format!("{} in group {group}: {error}", light.name));
             }
@@ -146,7 +146,7 @@ fn two_lights_validate() {
     for other in others.into_iter().flat_map(every_way) {
         for sun in &suns {
             let lights = [("sun", sun), ("other_lamp", &other)];
-            let text = emitted(1, &lights.map(|(name, light)| (name, light.light.source())));
+            let text = emitted(1, &lights.map(|(name, light)| (name, light.light.maps())));
             if let Err(error) = check(&text, 1, &lights.map(|(name, light)| (name, light.kind))) {
                 failures.push(format!("{} with {}: {error}", sun.name, other.name));
             }

@@ -177,6 +177,7 @@ impl Case {
 /// Longer sides of the finest and of the coarsest view's texels.
 fn texels(shadow: &DirectionalShadow) -> (f64, f64) {
     let sides = shadow
+        .maps()
         .views()
         .map(|view| f64::from(view.texel_size_world().max_element()));
     sides.fold((f64::INFINITY, 0.0), |(finest, coarsest), side| {
@@ -224,7 +225,7 @@ fn scan(case: &Case, scene: &Scene, casters: &[MeshCaster]) -> usize {
             Err(error) => panic!("{what}: {error}"),
         };
         assert_whole(&report, &what);
-        assert_finite(shadow.views(), shadow.view_uniforms(), &what);
+        assert_finite(shadow.maps().views(), shadow.maps().view_uniforms(), &what);
         assert!(
             spacing < f64::from(FLOOR_HALF * case.unit),
             "{what} is taken"
@@ -307,7 +308,7 @@ fn lamps_of_any_origin_are_right_or_refused() {
         ..Default::default()
     };
     let mut spot = SpotShadow::new(&gpu.device, &spot).expect("a valid lamp");
-    let asks = [omni.source(), spot.source()].map(|source| Ask::light(gpu, source));
+    let asks = [omni.maps(), spot.maps()].map(|source| Ask::light(gpu, source));
     let mut right = 0;
     for place in origins() {
         for (origin, position_world) in [(place, place + DVec3::Y * 3.0), (DVec3::ZERO, place)] {
@@ -352,9 +353,9 @@ fn lamps_of_any_origin_are_right_or_refused() {
                 };
                 assert_whole(&report, &what);
                 if index == 0 {
-                    assert_finite(omni.views(), omni.view_uniforms(), &what);
+                    assert_finite(omni.maps().views(), omni.maps().view_uniforms(), &what);
                 } else {
-                    assert_finite(spot.views(), spot.view_uniforms(), &what);
+                    assert_finite(spot.maps().views(), spot.maps().view_uniforms(), &what);
                 }
                 // Anywhere over the slab, where the shadow that it casts leaves some of the floor lit.
                 if light.distance(DVec3::Y * 3.0) > 0.5 {

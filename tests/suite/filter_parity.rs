@@ -94,11 +94,11 @@ impl Lit {
             },
         );
         assert_eq!(report.passes, 1);
-        let depths = readback::depth_layer(gpu, shadow.texture(), 0);
+        let depths = readback::depth_layer(gpu, shadow.maps().texture(), 0);
         let drawn = depths.iter().filter(|depth| **depth > 0.0).count();
         assert!(drawn > depths.len() / 10, "{drawn} texels drawn");
         Self {
-            view: shadow.view_uniforms()[0],
+            view: shadow.maps().view_uniforms()[0],
             shadow,
             depths,
         }
@@ -106,7 +106,7 @@ impl Lit {
 
     fn layer(&self) -> DepthLayer<'_> {
         DepthLayer {
-            size: self.shadow.texture().width(),
+            size: self.shadow.maps().texture().width(),
             depths: &self.depths,
         }
     }

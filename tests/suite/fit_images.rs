@@ -52,7 +52,7 @@ fn ask(placed: &Placed, places: &[DVec3]) -> Vec<f32> {
 /// The first cascade that covers a receiver on the floor.
 fn layer_at(placed: &Placed, place: DVec3) -> Option<usize> {
     let position = placed.render(place).as_vec3().as_dvec3();
-    let views = placed.shadow.view_uniforms();
+    let views = placed.shadow.maps().view_uniforms();
     views
         .iter()
         .position(|view| receiver(view, FILTER, Bias::Auto, position, DVec3::Y).inside)
@@ -75,7 +75,7 @@ fn texel_at(placed: &Placed, place: DVec3) -> f64 {
 fn texel_error(placed: &Placed, place: DVec3) -> f64 {
     let position = placed.render(place).as_vec3().as_dvec3();
     layer_at(placed, place).map_or(0.0, |layer| {
-        let view = placed.shadow.view_uniforms()[layer];
+        let view = placed.shadow.maps().view_uniforms()[layer];
         let twin = receiver(&view, FILTER, Bias::Auto, position, DVec3::Y);
         let band = band(&view, FILTER, Bias::Auto, position, DVec3::Y, &twin);
         let rounding = band.expect("a floor that is not edge on").texel;

@@ -67,16 +67,16 @@ impl Stage {
     /// Records a bad frame, submits the encoder all the same, and checks that nothing has come of it.
     fn refuse(&mut self, frame: &DirectionalFrame<'_>) -> ShadowError {
         let before = (
-            self.shadow.report().clone(),
-            self.shadow.view_uniforms().to_vec(),
+            self.shadow.maps().report().clone(),
+            self.shadow.maps().view_uniforms().to_vec(),
         );
         let mut encoder = gpu().encoder();
         let result = self.shadow.record_frame(&mut encoder, frame);
         let error = result.expect_err("a bad frame").clone();
         gpu().submit(encoder);
         let after = (
-            self.shadow.report().clone(),
-            self.shadow.view_uniforms().to_vec(),
+            self.shadow.maps().report().clone(),
+            self.shadow.maps().view_uniforms().to_vec(),
         );
         assert_eq!(before, after, "{error}");
         self.assert_good_shadows();

@@ -123,7 +123,7 @@ fn picture(gpu: &Gpu, shadow: &DirectionalShadow) -> RgbaImage {
     let bindings = ShadowBindings::new(
         &gpu.device,
         &ShadowBindingsDescriptor {
-            lights: &[("sun", shadow.source())],
+            lights: &[("sun", shadow.maps())],
             ..Default::default()
         },
     )
@@ -284,18 +284,13 @@ fn a_map_as_a_picture() {
     let mut encoder = gpu.encoder();
     {
         let mut pass = color_pass(&mut encoder, &target);
-        view.draw(
-            &gpu.device,
-            &mut pass,
-            shadow.source(),
-            DebugPicture::Layer(0),
-        )
-        .expect("a layer of the map");
+        view.draw(&mut pass, shadow.maps(), DebugPicture::Layer(0))
+            .expect("a layer of the map");
     }
     gpu.submit(encoder);
     let picture = readback::rgba8(gpu, &target);
     // Texel for pixel, the grey is what the map holds.
-    let depths = readback::depth_layer(gpu, shadow.texture(), 0);
+    let depths = readback::depth_layer(gpu, shadow.maps().texture(), 0);
     for (pixel, depth) in picture.pixels().zip(depths) {
         let error = f32::from(pixel.0[0]) - 255.0 * (1.0 - depth);
         assert!(error.abs() <= 0.51, "{pixel:?} for depth {depth}");

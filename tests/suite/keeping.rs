@@ -118,13 +118,13 @@ fn an_unchanged_frame_records_nothing() {
     let slab = Watched::new(slab(stage.gpu));
     assert_eq!(stage.status(&[&slab]), ViewStatus::Drawn);
     assert_eq!(slab.draws.get(), 1);
-    let first = readback::depth_layer(stage.gpu, stage.shadow.texture(), 0);
+    let first = readback::depth_layer(stage.gpu, stage.shadow.maps().texture(), 0);
     for _ in 0..3 {
         assert_eq!(stage.status(&[&slab]), ViewStatus::Kept);
     }
     assert_eq!(slab.draws.get(), 1, "a kept view asks nobody to draw");
     assert!(stage.is_dark_below(0.0) && !stage.is_dark_below(2.0));
-    let last = readback::depth_layer(stage.gpu, stage.shadow.texture(), 0);
+    let last = readback::depth_layer(stage.gpu, stage.shadow.maps().texture(), 0);
     assert_eq!(first, last);
 }
 
@@ -211,11 +211,11 @@ fn a_scene_without_casters_is_empty_and_lit() {
     assert!(!stage.is_dark_below(0.0), "lit before the first frame");
     assert_eq!(stage.status(&[]), ViewStatus::Empty);
     assert!(!stage.is_dark_below(0.0));
-    assert_eq!(stage.shadow.views().len(), 0);
+    assert_eq!(stage.shadow.maps().views().len(), 0);
     let nothing = Watched::with_bounds(slab(stage.gpu), Aabb::EMPTY);
     assert_eq!(stage.status(&[&nothing]), ViewStatus::Empty);
     assert_eq!(nothing.draws.get(), 0);
-    let report = stage.shadow.report();
+    let report = stage.shadow.maps().report();
     assert_eq!((report.views[0].casters, report.views[0].culled), (0, 1));
 }
 
@@ -226,7 +226,7 @@ fn when_casters_vanish_the_old_map_is_not_asked() {
     assert_eq!(stage.status(&[&slab]), ViewStatus::Drawn);
     assert!(stage.is_dark_below(0.0));
     assert_eq!(stage.status(&[]), ViewStatus::Empty);
-    let depths = readback::depth_layer(stage.gpu, stage.shadow.texture(), 0);
+    let depths = readback::depth_layer(stage.gpu, stage.shadow.maps().texture(), 0);
     assert!(
         depths.iter().any(|depth| *depth > 0.0),
         "the layer still holds it"

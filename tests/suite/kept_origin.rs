@@ -184,7 +184,7 @@ fn a_spot_kept_while_the_origin_moves_to_its_wall() {
         let wall = Wall::at(distance);
         let mut shadow =
             SpotShadow::new(&gpu.device, &SpotShadowDescriptor::default()).expect("a valid spot");
-        let ask = Ask::light(gpu, shadow.source());
+        let ask = Ask::light(gpu, shadow.maps());
         let mut status = ViewStatus::Empty;
         for origin in [DVec3::ZERO, wall.center] {
             let caster = wall.caster(gpu, &pipeline, origin);
@@ -266,7 +266,7 @@ fn a_spot_put_off_while_the_origin_moves() {
         )
         .expect("a valid pool");
         let slots = [(); 2].map(|()| pool.insert().expect("a free slot"));
-        let ask = Ask::slot(gpu, pool.source(), slots[1].index());
+        let ask = Ask::slot(gpu, pool.maps(), slots[1].index());
         let mut version = 0;
         let mut frame = |origin: DVec3, max_views: Option<u32>| {
             version += 1;

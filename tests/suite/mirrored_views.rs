@@ -227,13 +227,18 @@ fn a_mirror_shows_no_acne() {
         receivers: &[],
     };
     record(gpu, &mut shadow, &frame);
-    let texel = shadow.views().next().expect("a view").texel_size_world();
+    let texel = shadow
+        .maps()
+        .views()
+        .next()
+        .expect("a view")
+        .texel_size_world();
     // The tent's reach, and a texel for the offset and the caster's rasterisation.
     let footprint = 3.0 * f64::from(texel.max_element()) * std::f64::consts::SQRT_2;
     let bindings = ShadowBindings::new(
         &gpu.device,
         &ShadowBindingsDescriptor {
-            lights: &[("sun", shadow.source())],
+            lights: &[("sun", shadow.maps())],
             ..Default::default()
         },
     )

@@ -146,7 +146,7 @@ fn kept_maps_of_a_sun_are_what_would_be_drawn() {
         let sun = || DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");
         let (mut kept, mut fresh) = (sun(), sun());
         let [kept_bytes, fresh_bytes] =
-            [&kept, &fresh].map(|sun| TextureBytes::new(gpu, sun.texture()));
+            [&kept, &fresh].map(|sun| TextureBytes::new(gpu, sun.maps().texture()));
         let mut random = Random::new(91);
         let mut camera = Camera::modern(DVec3::new(0.0, 6.0, 14.0), DVec3::ZERO, 1.0, 1.5);
         let mut light = Vec3::new(0.4, -1.0, 0.3);
@@ -215,7 +215,7 @@ fn kept_faces_of_a_lamp_are_what_would_be_drawn() {
     let lamp = || OmniShadow::new(&gpu.device, &descriptor).expect("a valid lamp");
     let (mut kept, mut fresh) = (lamp(), lamp());
     let [kept_bytes, fresh_bytes] =
-        [&kept, &fresh].map(|lamp| TextureBytes::new(gpu, lamp.texture()));
+        [&kept, &fresh].map(|lamp| TextureBytes::new(gpu, lamp.maps().texture()));
     let mut random = Random::new(92);
     let mut position_world = DVec3::new(0.3, 1.7, -0.4);
     let mut ways = Ways::default();

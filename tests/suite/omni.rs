@@ -37,7 +37,7 @@ impl Lamp {
         };
         let shadow = OmniShadow::new(&gpu.device, &descriptor).expect("a valid lamp");
         Self {
-            ask: Ask::light(gpu, shadow.source()),
+            ask: Ask::light(gpu, shadow.maps()),
             shadow,
             name: format!("{filter:?} {bias:?} map {map_size}"),
         }

@@ -83,7 +83,7 @@ fn frames_that_are_refused_change_nothing() {
     let scene = scene();
     let list = scene.list();
     let mut shadow = lamp(64).expect("a valid lamp");
-    let ask = Ask::light(gpu, shadow.source());
+    let ask = Ask::light(gpu, shadow.maps());
     let good = OmniFrame {
         origin: DVec3::ZERO,
         light: OmniLight {
@@ -157,12 +157,18 @@ fn frames_that_are_refused_change_nothing() {
         ),
     ];
     for (frame, wanted) in cases {
-        let before = (shadow.report().clone(), shadow.view_uniforms().to_vec());
+        let before = (
+            shadow.maps().report().clone(),
+            shadow.maps().view_uniforms().to_vec(),
+        );
         let error = record_omni(gpu, &mut shadow, &frame).expect_err("a bad frame");
         assert_eq!(error, wanted);
         assert_eq!(
             before,
-            (shadow.report().clone(), shadow.view_uniforms().to_vec())
+            (
+                shadow.maps().report().clone(),
+                shadow.maps().view_uniforms().to_vec()
+            )
         );
         assert_eq!(ask.points(gpu, &points), [0.0, 1.0]);
         // What was held is still held: the good frame again costs nothing.
@@ -223,7 +229,7 @@ fn odd_lights_get_visibilities() {
             ..Default::default()
         };
         let mut shadow = OmniShadow::new(&gpu.device, &descriptor).expect("a valid lamp");
-        let ask = Ask::light(gpu, shadow.source());
+        let ask = Ask::light(gpu, shadow.maps());
         for position_world in places {
             for range in ranges {
                 let frame = OmniFrame {
@@ -266,7 +272,7 @@ fn lights_on_surfaces() {
     let gpu = gpu();
     let scene = scene();
     let mut shadow = lamp(256).expect("a valid lamp");
-    let ask = Ask::light(gpu, shadow.source());
+    let ask = Ask::light(gpu, shadow.maps());
     let frame = OmniFrame {
         origin: DVec3::ZERO,
         light: OmniLight {

@@ -97,7 +97,7 @@ fn receivers_around_the_map_are_lit() {
         .map(|_| random.point(DVec3::new(-3.5, 0.0, -3.5), DVec3::new(3.5, 0.0, 3.5)))
         .collect();
     for hall in halls(gpu()) {
-        let view = hall.shadow.views().next().expect("a view");
+        let view = hall.shadow.maps().views().next().expect("a view");
         let range = f64::from(view.depth_range_world());
         let width = f64::from(view.texel_size_world().max_element()) * f64::from(MAP_SIZE);
         let moved = |by: &dyn Fn(&DVec3) -> DVec3| inside.iter().map(by).collect::<Vec<_>>();
@@ -128,8 +128,8 @@ fn receivers_around_the_map_are_lit() {
 fn the_border_is_where_the_kernel_ends() {
     const STEPS: usize = 4000;
     for (hall, filter) in halls(gpu()).iter().zip(doubled(Filter::ALL)) {
-        let view = hall.shadow.views().next().expect("a view");
-        let uniform = hall.shadow.view_uniforms()[0];
+        let view = hall.shadow.maps().views().next().expect("a view");
+        let uniform = hall.shadow.maps().view_uniforms()[0];
         let from_side = |texel: DVec2| {
             let opposite = DVec2::splat(f64::from(MAP_SIZE)) - texel;
             texel.min(opposite).min_element()
@@ -264,7 +264,11 @@ fn a_caster_three_kilometres_up_casts() {
     let gpu = gpu();
     let slab = FarSlab::new(gpu);
     let shadow = slab.record(gpu);
-    let texel = f64::from(shadow.report().views[0].texel_size_world.max_element());
+    let texel = f64::from(
+        shadow.maps().report().views[0]
+            .texel_size_world
+            .max_element(),
+    );
     let mut random = Random::new(37);
     let (mut dark, mut lit) = (0, 0);
     let mut places = Vec::new();
@@ -307,7 +311,7 @@ fn depth_clip_control_changes_nothing() {
     let maps = [gpu(), &with_feature].map(|gpu| {
         let slab = FarSlab::new(gpu);
         let shadow = slab.record(gpu);
-        readback::depth_layer(gpu, shadow.texture(), 0)
+        readback::depth_layer(gpu, shadow.maps().texture(), 0)
     });
     let drawn = maps[0].iter().filter(|depth| **depth > 0.0).count();
     assert!(drawn > 1000, "{drawn} texels drawn");

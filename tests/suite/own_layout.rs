@@ -59,10 +59,10 @@ fn own_group(
     let sampler = gpu.device.create_sampler(&Default::default());
     let resources = [
         wgpu::BindingResource::Sampler(&sampler),
-        wgpu::BindingResource::TextureView(sun.texture_view()),
-        sun.uniform_buffer().as_entire_binding(),
-        wgpu::BindingResource::TextureView(lamp.texture_view()),
-        lamp.uniform_buffer().as_entire_binding(),
+        wgpu::BindingResource::TextureView(sun.maps().texture_view()),
+        sun.maps().uniform_buffer().as_entire_binding(),
+        wgpu::BindingResource::TextureView(lamp.maps().texture_view()),
+        lamp.maps().uniform_buffer().as_entire_binding(),
     ];
     let entries: Vec<_> = (0..)
         .zip(resources)
@@ -157,7 +157,7 @@ fn own_bindings_give_the_same_bits() {
         })
         .collect();
     let (layout, group) = own_group(gpu, &sun, &lamp);
-    let lights = [("sun", sun.source()), ("lamp", lamp.source())];
+    let lights = [("sun", sun.maps()), ("lamp", lamp.maps())];
     for (own, given) in [("sunlight", "shadow_sun"), ("lamplight", "shadow_lamp")] {
         let call = |function| format!("{function}(point.position, point.normal)");
         let own = PointShader::new(gpu, &composition(), "f32", &call(own), &layout);

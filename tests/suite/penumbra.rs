@@ -41,7 +41,7 @@ fn penumbrae_are_the_twins() {
     for filter in fixed.into_iter().chain(turned) {
         let bias = Bias::Auto;
         let lit = Lit::new(gpu, &scene, 131, filter, bias);
-        let depths = readback::depth_layer(gpu, lit.shadow.texture(), 0);
+        let depths = readback::depth_layer(gpu, lit.shadow.maps().texture(), 0);
         let map = DepthLayer {
             size: 131,
             depths: &depths,
@@ -295,7 +295,7 @@ fn a_spot_spreads_as_its_radius_says() {
             receivers: &[],
         };
         record_spot(gpu, &mut shadow, &frame).expect("a valid frame");
-        let ask = Ask::light(gpu, shadow.source());
+        let ask = Ask::light(gpu, shadow.maps());
         let radius = f64::from(light_size) * height / (above - height);
         let profile = Profile::measure(radius, 0.3, |points| ask.points(gpu, points));
         let name = format!("spot, height {height} radius {light_size}");

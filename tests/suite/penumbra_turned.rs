@@ -59,7 +59,7 @@ fn the_grain_is_fixed_in_the_world() {
             receivers: &[],
         };
         let report = record(gpu, &mut shadow, &frame);
-        let view = &shadow.view_uniforms()[0];
+        let view = &shadow.maps().view_uniforms()[0];
         let at = reference::receiver(view, filter, Bias::Auto, place, DVec3::Y);
         let part = at.texel.fract();
         let at_border = part.min_element() < 0.02 || part.max_element() > 0.98;

@@ -189,14 +189,14 @@ fn lamps_see_what_they_see_alone() {
             receivers: &EVERYWHERE,
         };
         record_omni(gpu, &mut alone, &frame).expect("a valid frame");
-        let wanted = Ask::light(gpu, alone.source()).points(gpu, &points);
+        let wanted = Ask::light(gpu, alone.maps()).points(gpu, &points);
         let dark = wanted.iter().filter(|seen| **seen < 0.5).count();
         assert!(dark > 200 && dark < 2800, "{dark}");
-        let seen = Ask::slot(gpu, pool.source(), light.slot.index()).points(gpu, &points);
+        let seen = Ask::slot(gpu, pool.maps(), light.slot.index()).points(gpu, &points);
         assert_eq!(bits(&seen), bits(&wanted), "{light:?}");
     }
     for index in [unlisted.index(), 4, 5, 1000, u32::MAX] {
-        let seen = Ask::slot(gpu, pool.source(), index).points(gpu, &points);
+        let seen = Ask::slot(gpu, pool.maps(), index).points(gpu, &points);
         assert!(seen.iter().all(|seen| *seen == 1.0), "slot {index}");
     }
 }
@@ -239,9 +239,9 @@ fn spots_see_what_they_see_alone() {
             receivers: &EVERYWHERE,
         };
         record_spot(gpu, &mut alone, &frame).expect("a valid frame");
-        let wanted = Ask::light(gpu, alone.source()).points(gpu, &points);
+        let wanted = Ask::light(gpu, alone.maps()).points(gpu, &points);
         assert!(wanted.iter().filter(|seen| **seen < 0.5).count() > 100);
-        let seen = Ask::slot(gpu, pool.source(), light.slot.index()).points(gpu, &points);
+        let seen = Ask::slot(gpu, pool.maps(), light.slot.index()).points(gpu, &points);
         assert_eq!(bits(&seen), bits(&wanted), "{light:?}");
     }
 }
@@ -294,7 +294,7 @@ fn the_wgsl_does_not_grow_with_the_lights() {
     let texts = [2, 32].map(|capacity| {
         let lamps = pool(capacity, 8).expect("a valid pool");
         let descriptor = ShadowBindingsDescriptor {
-            lights: &[("sun", sun.source()), ("lamps", lamps.source())],
+            lights: &[("sun", sun.maps()), ("lamps", lamps.maps())],
             ..Default::default()
         };
         let bindings = ShadowBindings::new(&gpu.device, &descriptor).expect("valid bindings");

@@ -38,7 +38,7 @@ impl Row {
         }
         let asks = lights
             .iter()
-            .map(|light| Ask::slot(gpu, pool.source(), light.slot.index()))
+            .map(|light| Ask::slot(gpu, pool.maps(), light.slot.index()))
             .collect();
         Self {
             pool,
@@ -117,6 +117,7 @@ fn the_most_important_are_refreshed_first() {
     }
     let statuses: Vec<_> = row
         .pool
+        .maps()
         .report()
         .views
         .iter()
@@ -180,10 +181,10 @@ fn a_new_light_is_lit_until_its_turn() {
     let mut row = Row::new(gpu, &[1.0, 8.0]);
     assert_eq!(row.record(gpu, Some(1)), [1]);
     assert!(row.seen(gpu, 0).iter().all(|seen| *seen == 1.0));
-    let waits = row.pool.report().views[..6]
+    let waits = row.pool.maps().report().views[..6]
         .iter()
         .any(|view| view.status == ViewStatus::Deferred);
-    assert!(waits, "{:?}", row.pool.report().views);
+    assert!(waits, "{:?}", row.pool.maps().report().views);
     assert_eq!(row.record(gpu, Some(1)), [0]);
     assert!(row.seen(gpu, 0).contains(&0.0));
 }

@@ -35,7 +35,7 @@ fn floor() -> Vec<Point> {
 fn assert_lit(kind: Kind, filter: Filter) {
     let gpu = gpu();
     let light = kind.lit(gpu, &stage(gpu), filter, Bias::Auto);
-    let lights = [("lights", light.source())];
+    let lights = [("lights", light.maps())];
     let points = floor();
     let ask = |function: &str, index: u32| {
         let call = format!("f32({function})").replace("INDEX", &format!("{index}u"));

@@ -73,7 +73,7 @@ fn receivers_are_the_twins() {
             let lit = Lit::new(gpu, &scene, map_size, filter, bias);
             let (module, function) = module_of(bias);
             let wgsl = shader::compose(&[module]).expect("a module of the table") + RAW;
-            let (layout, group) = view_group(gpu, lit.shadow.uniform_buffer());
+            let (layout, group) = view_group(gpu, lit.shadow.maps().uniform_buffer());
             let call = format!("raw({function}(view, point.position, point.normal))");
             let shader = PointShader::new(gpu, &wgsl, "array<vec4<f32>, 2>", &call, &layout);
             let points = points(&scene, 5);

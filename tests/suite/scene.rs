@@ -170,7 +170,7 @@ fn two_cameras_share_the_maps_of_a_sun() {
         (Stability::Rotation, 2),
     ] {
         let mut shadow = sun(gpu, stability, cascades);
-        let ask = Ask::light(gpu, shadow.source());
+        let ask = Ask::light(gpu, shadow.maps());
         let mut scene = ShadowScene::new();
         for step in 0..3 {
             let frame = scene
@@ -191,6 +191,7 @@ fn two_cameras_share_the_maps_of_a_sun() {
             assert!(drawn(ViewStatus::Kept) || step == 0);
         }
         let texel = shadow
+            .maps()
             .views()
             .map(|view| view.texel_size_world().max_element());
         let texel = f64::from(texel.fold(0.0, f32::max));
@@ -230,6 +231,7 @@ fn a_mirror_sees_what_its_camera_sees() {
             .record(&mut encoder, &frame, &DirectionalLight::new(SUN.as_vec3()))
             .expect("a valid frame");
         shadow
+            .maps()
             .views()
             .map(ShadowView::clip_from_render)
             .collect::<Vec<_>>()
@@ -276,10 +278,7 @@ fn two_cameras_share_the_maps_of_local_lights() {
         },
     )
     .expect("a valid spot");
-    let asks = [
-        Ask::light(gpu, both.source()),
-        Ask::light(gpu, cone.source()),
-    ];
+    let asks = [Ask::light(gpu, both.maps()), Ask::light(gpu, cone.maps())];
     let mut scene = ShadowScene::new();
     let frame = scene
         .frame(&ShadowFrameDescriptor {
@@ -307,8 +306,8 @@ fn two_cameras_share_the_maps_of_local_lights() {
     let coarsest = |texels: &mut dyn Iterator<Item = f32>| f64::from(texels.fold(0.0, f32::max));
     let texel = |view: &ShadowView| view.texel_size_world().max_element();
     let texels = [
-        coarsest(&mut both.views().map(texel)),
-        coarsest(&mut cone.views().map(texel)),
+        coarsest(&mut both.maps().views().map(texel)),
+        coarsest(&mut cone.maps().views().map(texel)),
     ];
     for yard in 0..2 {
         for (ask, texel) in asks.iter().zip(texels) {
@@ -412,7 +411,7 @@ fn coverage_is_one_for_all_lights() {
             outer_angle_radians: 1.3,
             range: f32::INFINITY,
         };
-        let ask = Ask::light(gpu, shadow.source());
+        let ask = Ask::light(gpu, shadow.maps());
         let mut encoder = gpu.encoder();
         let light = DirectionalLight::new(SUN.as_vec3());
         let of =

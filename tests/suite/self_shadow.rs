@@ -144,7 +144,7 @@ impl Slope {
         let area = u.cross(v).dot(light.normalize()).abs() / (texel.x * texel.y);
         let across = |side: DVec3| side.reject_from(light).length() / texel.min_element();
         let border = 2.0 * (across(u) + across(v)) + 4.0;
-        let depths = readback::depth_layer(gpu, shadow.texture(), 0);
+        let depths = readback::depth_layer(gpu, shadow.maps().texture(), 0);
         let drawn = depths.iter().filter(|depth| **depth > 0.0).count() as f64;
         assert!(
             (drawn - area).abs() <= border,

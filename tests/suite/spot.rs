@@ -39,7 +39,7 @@ impl Spot {
         };
         let shadow = SpotShadow::new(&gpu.device, &descriptor).expect("a valid spot");
         Self {
-            ask: Ask::light(gpu, shadow.source()),
+            ask: Ask::light(gpu, shadow.maps()),
             shadow,
             name: format!("{filter:?} {bias:?} map {map_size}"),
         }

@@ -34,7 +34,7 @@ fn bad_spots_are_refused() {
         receivers: &EVERYWHERE,
     };
     record_spot(gpu, &mut shadow, &frame(good)).expect("a good frame");
-    let before = shadow.report().clone();
+    let before = shadow.maps().report().clone();
     let angle = |outer_angle_radians: f32, value: &str| {
         let light = SpotLight {
             outer_angle_radians,
@@ -85,7 +85,7 @@ fn bad_spots_are_refused() {
     for (light, wanted) in cases {
         let error = record_spot(gpu, &mut shadow, &frame(light)).expect_err("a bad light");
         assert_eq!(error, wanted);
-        assert_eq!(&before, shadow.report(), "{error}");
+        assert_eq!(&before, shadow.maps().report(), "{error}");
     }
     let descriptor = SpotShadowDescriptor {
         filter: Filter::DirectionGrid { radius: 0.1 },

@@ -92,7 +92,7 @@ fn a_walk_changes_shadows_only_with_a_rung() {
         let served: Vec<_> = places
             .iter()
             .map(|place| {
-                let uniforms = shadow.view_uniforms();
+                let uniforms = shadow.maps().view_uniforms();
                 let seen = camera.sees(*place, 120.0, 0.001);
                 seen.then(|| {
                     uniforms
@@ -155,7 +155,7 @@ fn no_motion_changes_a_spheres_texels() {
         for _ in 0..50 {
             let place = random.point(DVec3::new(-90.0, 0.0, -90.0), DVec3::new(90.0, 0.0, 90.0));
             if camera.sees(place, 80.0, 0.001) {
-                let mut views = shadow.view_uniforms().iter();
+                let mut views = shadow.maps().view_uniforms().iter();
                 let is_held = views.any(|view| reference::holds(view, place));
                 let serves = report.views.iter().all(|view| view.casters > 0);
                 assert!(is_held || !serves, "{place}");
@@ -225,7 +225,7 @@ fn explicit_splits_end_where_they_say() {
             let depth = (camera.pose.eye - place).dot(camera.pose.axes.z_axis);
             let cascade = usize::from(depth > 15.0) + usize::from(depth > 40.0);
             let holds = |view: &_| reference::holds(view, place);
-            let uniforms = shadow.view_uniforms();
+            let uniforms = shadow.maps().view_uniforms();
             let held = holds(&uniforms[cascade]);
             if !held && !uniforms[..cascade].iter().any(holds) {
                 left_out.push(Point::rounded(place, DVec3::Y));

@@ -12,7 +12,7 @@ use crate::support::wgsl;
 /// What `ShadowBindings` emits for the light where there is no gather, with the layout and group that go with it.
 fn by_samples(gpu: &Gpu, lit: &Lit, points: &[Point]) -> Vec<f32> {
     let descriptor = ShadowBindingsDescriptor {
-        lights: &[("sun", lit.shadow.source())],
+        lights: &[("sun", lit.shadow.maps())],
         ..Default::default()
     };
     let bindings = ShadowBindings::new(&gpu.device, &descriptor).expect("valid bindings");
@@ -59,8 +59,8 @@ fn by_samples(gpu: &Gpu, lit: &Lit, points: &[Point]) -> Vec<f32> {
     let sampler = gpu.device.create_sampler(&Default::default());
     let resources = [
         wgpu::BindingResource::Sampler(&sampler),
-        lit.shadow.uniform_buffer().as_entire_binding(),
-        wgpu::BindingResource::TextureView(lit.shadow.texture_view()),
+        lit.shadow.maps().uniform_buffer().as_entire_binding(),
+        wgpu::BindingResource::TextureView(lit.shadow.maps().texture_view()),
     ];
     let entries: Vec<_> = (0..)
         .zip(resources)

@@ -179,7 +179,7 @@ fn debug_picture(gpu: &Gpu, light: &dyn Light, what: DebugPicture) -> RgbaImage 
     let mut encoder = gpu.encoder();
     {
         let mut pass = color_pass(&mut encoder, &target);
-        view.draw(&gpu.device, &mut pass, light.source(), what)
+        view.draw(&mut pass, light.maps(), what)
             .expect("a layer of the map");
     }
     gpu.submit(encoder);
@@ -235,7 +235,7 @@ fn tinted(gpu: &Gpu, light: &dyn Light) -> RgbaImage {
             ..Default::default()
         });
         let render_from_clip = clip_from_render.inverse().as_mat4();
-        view.draw_cascades(device, &mut pass, light.source(), &depth, render_from_clip)
+        view.draw_cascades(&mut pass, light.maps(), &depth, render_from_clip)
             .expect("a depth texture");
     }
     gpu.submit(encoder);

@@ -1,7 +1,7 @@
 //! Asks any set of lights through `ShadowBindings`, and records their frames.
 
 use wgpu_shadows::{
-    OmniShadow, ShadowBindings, ShadowBindingsDescriptor, ShadowError, ShadowReport, ShadowSource,
+    OmniShadow, ShadowBindings, ShadowBindingsDescriptor, ShadowError, ShadowMaps, ShadowReport,
     SpotShadow,
 };
 
@@ -17,7 +17,7 @@ pub struct Ask {
 
 impl Ask {
     /// `value` is a WGSL expression over `point.position` and `point.normal` that calls the lights' functions.
-    pub fn new(gpu: &Gpu, lights: &[(&str, ShadowSource<'_>)], value: &str) -> Self {
+    pub fn new(gpu: &Gpu, lights: &[(&str, &ShadowMaps)], value: &str) -> Self {
         let descriptor = ShadowBindingsDescriptor {
             visibility: wgpu::ShaderStages::COMPUTE,
             lights,
@@ -29,13 +29,13 @@ impl Ask {
     }
 
     /// One light by itself.
-    pub fn light(gpu: &Gpu, source: ShadowSource<'_>) -> Self {
+    pub fn light(gpu: &Gpu, source: &ShadowMaps) -> Self {
         let value = "shadow_light(point.position, point.normal)";
         Self::new(gpu, &[("light", source)], value)
     }
 
     /// The light in slot `index` of a pool.
-    pub fn slot(gpu: &Gpu, pool: ShadowSource<'_>, index: u32) -> Self {
+    pub fn slot(gpu: &Gpu, pool: &ShadowMaps, index: u32) -> Self {
         let value = format!("shadow_lights({index}u, point.position, point.normal)");
         Self::new(gpu, &[("lights", pool)], &value)
     }

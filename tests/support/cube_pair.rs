@@ -126,7 +126,7 @@ impl<'a> Stage<'a> {
     }
 
     pub fn layer(&self, layer: u32) -> Vec<u32> {
-        let depths = readback::depth_layer(self.gpu, self.shadow.texture(), layer);
+        let depths = readback::depth_layer(self.gpu, self.shadow.maps().texture(), layer);
         depths.into_iter().map(f32::to_bits).collect()
     }
 }

@@ -23,7 +23,7 @@ pub fn picture(
     let sources: Vec<_> = names
         .iter()
         .zip(lights)
-        .map(|(name, (_, light))| (name.as_str(), light.source()))
+        .map(|(name, (_, light))| (name.as_str(), light.maps()))
         .collect();
     let descriptor = ShadowBindingsDescriptor {
         group,

@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 use wgpu_shadows::{
     Aabb, Bias, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter,
     OmniLight, OmniShadow, OmniShadowDescriptor, OmniShadowPool, PoolDescriptor, PoolLight,
-    ShadowSource, SpotLight, SpotShadow, SpotShadowDescriptor, SpotShadowPool,
+    ShadowMaps, SpotLight, SpotShadow, SpotShadowDescriptor, SpotShadowPool,
 };
 
 use crate::support::ask::{record_omni, record_spot, submitted};
@@ -18,24 +18,14 @@ use crate::support::scene::{Mesh, Scene};
 
 /// A light, whichever kind it is.
 pub trait Light {
-    fn source(&self) -> ShadowSource<'_>;
-    fn texture_view(&self) -> &wgpu::TextureView;
-    fn uniform_buffer(&self) -> &wgpu::Buffer;
+    fn maps(&self) -> &ShadowMaps;
 }
 
 macro_rules! light {
     ($($kind:ty),*) => {
         $(impl Light for $kind {
-            fn source(&self) -> ShadowSource<'_> {
-                <$kind>::source(self)
-            }
-
-            fn texture_view(&self) -> &wgpu::TextureView {
-                <$kind>::texture_view(self)
-            }
-
-            fn uniform_buffer(&self) -> &wgpu::Buffer {
-                <$kind>::uniform_buffer(self)
+            fn maps(&self) -> &ShadowMaps {
+                <$kind>::maps(self)
             }
         })*
     };

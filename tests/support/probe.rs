@@ -157,7 +157,7 @@ impl SunProbe {
             &gpu.device,
             &ShadowBindingsDescriptor {
                 visibility: wgpu::ShaderStages::COMPUTE,
-                lights: &[("sun", shadow.source())],
+                lights: &[("sun", shadow.maps())],
                 ..Default::default()
             },
         )

@@ -57,7 +57,7 @@ fn receivers_beyond_every_cascade_are_lit() {
             );
             let ask_view = Ask::new(
                 gpu(),
-                &[("sun", sun.shadow.source())],
+                &[("sun", sun.shadow.maps())],
                 "f32(shadow_view_sun(point.position))",
             );
             let mut places: Vec<_> = (0..3000)
@@ -84,7 +84,7 @@ fn receivers_beyond_every_cascade_are_lit() {
                 );
                 let at = place.as_vec3().as_dvec3();
                 let inside = |nudge: DVec3| {
-                    let mut views = sun.shadow.view_uniforms().iter();
+                    let mut views = sun.shadow.maps().view_uniforms().iter();
                     views
                         .any(|view| receiver(view, filter, Bias::Auto, at + nudge, DVec3::Y).inside)
                 };
@@ -213,11 +213,11 @@ fn no_light_of_a_pool_reads_its_neighbours() {
     for (index, place) in places.into_iter().enumerate() {
         let (spot, lamp) = slots[index];
         let dark = index != 1;
-        let ask = Ask::slot(gpu, spots.source(), spot.index());
+        let ask = Ask::slot(gpu, spots.maps(), spot.index());
         check(&ask, place, dark, &|d| {
             (dark || clear(d)) && d.angle_between(axis) < 0.89
         });
-        let ask = Ask::slot(gpu, lamps.source(), lamp.index());
+        let ask = Ask::slot(gpu, lamps.maps(), lamp.index());
         check(&ask, place, dark, &|d| dark || clear(d));
     }
     table::record(

@@ -42,6 +42,7 @@ fn layer_of(sun: &Sun, place: DVec3) -> Option<usize> {
     let position = place.as_vec3().as_dvec3();
     let filter = Filter::default();
     sun.shadow
+        .maps()
         .view_uniforms()
         .iter()
         .position(|view| receiver(view, filter, Bias::Auto, position, DVec3::Y).inside)
@@ -65,7 +66,7 @@ fn cascaded(cascades: u32, split: CascadeSplit, world: &World, meshes: &[Mesh]) 
     assert!(bounds_of(meshes).max.z < 80.0);
     let layers = report.views.iter().map(|view| view.layer);
     assert!(layers.eq(0..cascades), "one report a layer");
-    let uniforms = sun.shadow.view_uniforms();
+    let uniforms = sun.shadow.maps().view_uniforms();
     assert!(uniforms.iter().all(|view| view.layer < cascades));
     sun
 }
@@ -94,6 +95,7 @@ fn every_cascade_shows_the_truth_and_borders_are_no_seams() {
             let sun = cascaded(cascades, split, &world, &meshes);
             let texels: Vec<_> = sun
                 .shadow
+                .maps()
                 .report()
                 .views
                 .iter()

@@ -91,7 +91,7 @@ fn any_lens_is_fitted_or_refused() {
             match result {
                 Ok(()) => {
                     taken += 1;
-                    for view in sun.shadow.view_uniforms() {
+                    for view in sun.shadow.maps().view_uniforms() {
                         let numbers: &[f32] = bytemuck::cast_slice(&view.texel_from_anchor);
                         let planes = [view.plane_across, view.plane_down, view.plane_depth];
                         let planes: &[f32] = bytemuck::cast_slice(&planes);

@@ -40,7 +40,7 @@ fn look_along(
         &scene.list(),
         &[],
     );
-    let view = *sun.shadow.views().next().expect("a view");
+    let view = *sun.shadow.maps().views().next().expect("a view");
     assert_eq!(view.texel_size_world(), glam::Vec2::splat(1.0 / 16.0));
     let step = view.depth_range_world() / 64.0;
     assert_eq!(step.log2().fract(), 0.0, "{step}");
@@ -50,7 +50,7 @@ fn look_along(
         .map(|place| Point::rounded(place, -light))
         .collect();
     // The grid of turned patterns is the world's own, and so the one thing that tells places apart.
-    let uniforms = sun.shadow.view_uniforms().iter();
+    let uniforms = sun.shadow.maps().view_uniforms().iter();
     let uniforms = uniforms.map(|view| ShadowViewUniform { grid: 0, ..*view });
     (sun.ask(&points), uniforms.collect())
 }

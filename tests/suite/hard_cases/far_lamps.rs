@@ -57,10 +57,7 @@ impl Both {
         };
         let spot = SpotShadow::new(&gpu.device, &spot).expect("a spot");
         Self {
-            asks: [
-                Ask::light(gpu, lamp.source()),
-                Ask::light(gpu, spot.source()),
-            ],
+            asks: [Ask::light(gpu, lamp.maps()), Ask::light(gpu, spot.maps())],
             lamp,
             spot,
         }
@@ -104,7 +101,11 @@ impl Both {
     }
 
     fn uniforms(&self) -> Vec<ShadowViewUniform> {
-        [self.lamp.view_uniforms(), self.spot.view_uniforms()].concat()
+        [
+            self.lamp.maps().view_uniforms(),
+            self.spot.maps().view_uniforms(),
+        ]
+        .concat()
     }
 }
 

@@ -153,12 +153,12 @@ impl Lights {
         let mut lamps = OmniShadowPool::new(device, &pool).expect("a pool");
         let slots = [spots.insert().expect("free"), lamps.insert().expect("free")];
         let asks = vec![
-            Ask::light(gpu, suns[0].source()),
-            Ask::light(gpu, spot.source()),
-            Ask::light(gpu, lamp.source()),
-            Ask::slot(gpu, spots.source(), slots[0].index()),
-            Ask::slot(gpu, lamps.source(), slots[1].index()),
-            Ask::light(gpu, suns[1].source()),
+            Ask::light(gpu, suns[0].maps()),
+            Ask::light(gpu, spot.maps()),
+            Ask::light(gpu, lamp.maps()),
+            Ask::slot(gpu, spots.maps(), slots[0].index()),
+            Ask::slot(gpu, lamps.maps(), slots[1].index()),
+            Ask::light(gpu, suns[1].maps()),
         ];
         Self {
             suns,

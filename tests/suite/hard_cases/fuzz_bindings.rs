@@ -40,7 +40,7 @@ fn any_bindings_are_taken_or_refused() {
         ..Default::default()
     };
     let pool = SpotShadowPool::new(&gpu.device, &descriptor).expect("a pool");
-    let sources = [sun.shadow.source(), lamp.source(), pool.source()];
+    let sources = [sun.shadow.maps(), lamp.maps(), pool.maps()];
     let group = prop_oneof![4 => 0..4_u32, 1 => any::<u32>()];
     let lights = prop::collection::vec((name(), 0..3_usize), 0..4);
     let known: Vec<_> = shader::MODULES
@@ -100,7 +100,7 @@ fn any_debug_picture_is_drawn_or_refused() {
         ..Default::default()
     };
     let pool = OmniShadowPool::new(&gpu.device, &descriptor).expect("a pool");
-    let sources = [sun.shadow.source(), lamp.source(), pool.source()];
+    let sources = [sun.shadow.maps(), lamp.maps(), pool.maps()];
     let view = DebugView::new(&gpu.device, F::Rgba8Unorm).expect("a debug view");
     let target = color_target(gpu, 4);
     let depth = gpu.device.create_texture(&wgpu::TextureDescriptor {
@@ -117,7 +117,7 @@ fn any_debug_picture_is_drawn_or_refused() {
     let depths = [
         depth.create_view(&Default::default()),
         color_target(gpu, 4).create_view(&Default::default()),
-        sun.shadow.texture_view().clone(),
+        sun.shadow.maps().texture_view().clone(),
     ];
     let formats = prop::sample::select(vec![
         F::R8Unorm,
@@ -162,9 +162,9 @@ fn any_debug_picture_is_drawn_or_refused() {
             let mut encoder = gpu.encoder();
             {
                 let mut pass = color_pass(&mut encoder, &target);
-                let (device, source) = (&gpu.device, sources[light]);
-                counts.count(&view.draw(device, &mut pass, source, picture));
-                counts.count(&view.draw_cascades(device, &mut pass, source, &depths[kind], matrix));
+                let source = sources[light];
+                counts.count(&view.draw(&mut pass, source, picture));
+                counts.count(&view.draw_cascades(&mut pass, source, &depths[kind], matrix));
             }
             gpu.submit(encoder);
             Ok(())

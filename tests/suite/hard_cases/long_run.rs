@@ -122,10 +122,10 @@ impl Lights {
         let (sun, spot) = (sun.expect("a sun"), spot.expect("a spot"));
         let (lamp, pool) = (lamp.expect("a lamp"), pool.expect("a pool"));
         let lights = [
-            ("sun", sun.source()),
-            ("spot", spot.source()),
-            ("lamp", lamp.source()),
-            ("pool", pool.source()),
+            ("sun", sun.maps()),
+            ("spot", spot.maps()),
+            ("lamp", lamp.maps()),
+            ("pool", pool.maps()),
         ];
         let bindings = ShadowBindings::new(
             device,

@@ -25,7 +25,7 @@ fn depths(pipeline: &CasterPipeline, mesh: &Mesh, transform: Mat4) -> Vec<f32> {
     let light = DirectionalLight::new(Vec3::new(0.4, -1.0, 0.3));
     let cover = Aabb::new(Vec3::splat(-2.0), Vec3::splat(2.0));
     sun.record(DVec3::ZERO, light, Coverage::Bounds(cover), &casters, &[]);
-    let depths = readback::depth_layer(gpu, sun.shadow.texture(), 0);
+    let depths = readback::depth_layer(gpu, sun.shadow.maps().texture(), 0);
     assert!(depths.iter().filter(|depth| **depth > 0.0).count() > 100);
     depths
 }

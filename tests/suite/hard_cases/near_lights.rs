@@ -43,10 +43,7 @@ impl Both {
         };
         let spot = SpotShadow::new(&gpu.device, &descriptor).expect("a spot");
         Self {
-            asks: [
-                Ask::light(gpu, lamp.source()),
-                Ask::light(gpu, spot.source()),
-            ],
+            asks: [Ask::light(gpu, lamp.maps()), Ask::light(gpu, spot.maps())],
             lamp,
             spot,
         }

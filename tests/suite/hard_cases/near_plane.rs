@@ -161,7 +161,7 @@ fn nothing_is_cut_off_beside_a_light() {
         ..Default::default()
     };
     let mut lamp = OmniShadow::new(&gpu.device, &descriptor).expect("a lamp");
-    let ask = Ask::light(gpu, lamp.source());
+    let ask = Ask::light(gpu, lamp.maps());
     let frame = OmniFrame {
         origin: DVec3::ZERO,
         light: OmniLight {
@@ -182,7 +182,7 @@ fn nothing_is_cut_off_beside_a_light() {
             ..Default::default()
         };
         let mut spot = SpotShadow::new(&gpu.device, &descriptor).expect("a spot");
-        let ask = Ask::light(gpu, spot.source());
+        let ask = Ask::light(gpu, spot.maps());
         for direction in [
             DVec3::Z,
             DVec3::new(-1.0, 0.3, 0.2),

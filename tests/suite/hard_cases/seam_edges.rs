@@ -97,7 +97,7 @@ fn edges_at_seams_are_as_true_as_elsewhere() {
             ..Default::default()
         };
         let mut lamp = OmniShadow::new(&gpu.device, &descriptor).expect("a lamp");
-        let ask = Ask::light(gpu, lamp.source());
+        let ask = Ask::light(gpu, lamp.maps());
         let mut random = Random::new(101);
         let [middle, edge, corner] = [1, 2, 3].map(|sum| {
             let directions = directions(&[sum], &mut random);

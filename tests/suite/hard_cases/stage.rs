@@ -69,7 +69,7 @@ impl Sun {
 
     /// Side of a texel of the first view.
     pub fn texel(&self) -> f64 {
-        let view = self.shadow.views().next().expect("a view");
+        let view = self.shadow.maps().views().next().expect("a view");
         f64::from(view.texel_size_world().max_element())
     }
 }

@@ -52,7 +52,10 @@ fn a_trembling_camera_leaves_shadows_alone() {
                 &scene.list(),
                 &[],
             );
-            let now = (sun.shadow.views().copied().collect(), sun.ask(&points));
+            let now = (
+                sun.shadow.maps().views().copied().collect(),
+                sun.ask(&points),
+            );
             let partial = now.1.iter().filter(|seen| **seen > 0.0 && **seen < 1.0);
             assert!(partial.count() > 10, "samples on edges of shadows");
             if let Some((views, seen)) = last {
@@ -163,7 +166,7 @@ fn windows_rarely_change_in_a_walk_through_a_town() {
             &scene.list(),
             &[],
         );
-        for view in sun.shadow.views().copied() {
+        for view in sun.shadow.maps().views().copied() {
             let layer = view.layer() as usize;
             let size = |view: ShadowView| view.texel_size_world();
             if let Some(before) = last[layer].replace(view) {
@@ -208,7 +211,7 @@ fn a_window_that_moves_leaves_shadows_alone() {
         let camera = Camera::modern(eye, DVec3::new(t.cos(), 0.4, -0.3), 0.7, 1.6);
         let coverage = Coverage::Camera(camera.view());
         sun.record(DVec3::ZERO, shining(LIGHT), coverage, &scene.list(), &[]);
-        let view = *sun.shadow.views().next().expect("a view");
+        let view = *sun.shadow.maps().views().next().expect("a view");
         let seen = sun.ask(&points);
         if let Some((before, seen_before, camera_before)) = &last
             && *before != view

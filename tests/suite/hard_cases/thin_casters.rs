@@ -86,7 +86,7 @@ fn record(sun: &mut Sun, field: &Field, nudge: f64) {
         &scene.list(),
         &[],
     );
-    let view = sun.shadow.views().next().expect("a view");
+    let view = sun.shadow.maps().views().next().expect("a view");
     assert_eq!(view.texel_size_world(), Vec2::splat(TEXEL as f32));
 }
 
