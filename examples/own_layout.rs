@@ -65,7 +65,7 @@ fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
     let mut lamp = OmniShadow::new(&gpu.device, &Default::default())?;
 
     // The library's WGSL, the engine's bindings and functions behind it, and a group that holds what they name.
-    let modules = shader::compose(&["bias_plane", "filter_tent_narrow", "cube_face", "normal"])?;
+    let modules = shader::compose(&["bias_plane", "filter_tent3", "cube_face", "normal"])?;
     let layout = layout(&gpu.device);
     let sampler = gpu.device.create_sampler(&Default::default());
     let resources = [

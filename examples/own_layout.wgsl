@@ -11,7 +11,7 @@ fn sunlight(position: vec3<f32>, normal: vec3<f32>) -> f32 {
     if !receiver.inside {
         return 1.0;
     }
-    return shadow_filter_tent_narrow(sun_depths, depth_sampler, receiver);
+    return shadow_filter_tent3(sun_depths, depth_sampler, receiver);
 }
 
 fn lamplight(position: vec3<f32>, normal: vec3<f32>) -> f32 {
@@ -20,5 +20,5 @@ fn lamplight(position: vec3<f32>, normal: vec3<f32>) -> f32 {
     if !receiver.inside {
         return 1.0;
     }
-    return shadow_filter_tent_narrow(lamp_depths, depth_sampler, receiver);
+    return shadow_filter_tent3(lamp_depths, depth_sampler, receiver);
 }

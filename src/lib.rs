@@ -86,7 +86,7 @@ pub use cast::{
     CasterPipeline, CasterPipelineDescriptor, CasterVertex, MeshCaster, MeshCasterDescriptor,
     MeshIndices, ModelTransform, PositionAttribute, Revision, ShadowCaster, is_closed_solid,
 };
-pub use debug::{DebugPicture, DebugView};
+pub use debug::{DebugImage, DebugView};
 pub use error::{BindingsError, CasterError, DebugViewError, DeviceRefusal, ShadowError};
 pub use fit::{CameraView, CascadeSplit, ShadowView, SliceReport, Stability};
 pub use gpu::DepthFormat;

@@ -3,8 +3,8 @@
 //! All names begin with `shadow_`, `Shadow` or `SHADOW_`, so the texts concatenate with any engine's, in any order, and load
 //! as they are as WESL or naga_oil modules. Sampling functions take texture, sampler and view as arguments; nothing in
 //! [`MODULES`] declares a binding but the caster modules and those of whole passes. An engine with its own bind groups composes
-//! `["bias_plane", "filter_tent_narrow"]` and calls
-//! `shadow_filter_tent_narrow(map, map_sampler, shadow_receiver_plane(view, position, normal))`. On devices whose shaders cannot
+//! `["bias_plane", "filter_tent3"]` and calls
+//! `shadow_filter_tent3(map, map_sampler, shadow_receiver_plane(view, position, normal))`. On devices whose shaders cannot
 //! gather (OpenGL ES 3.0, WebGL 2) it names `"texels_by_samples"` beside them and binds the maps as `texture_2d_array<f32>`.
 
 use crate::error::BindingsError;
@@ -87,29 +87,29 @@ pub const MODULES: &[ShaderModule] = &[
         ["view", "texels", "gather"]
     ),
     module!(
-        "filter_tent_narrow",
-        "filter_tent_narrow.wgsl",
+        "filter_tent3",
+        "filter_tent3.wgsl",
         ["view", "texels", "gather"]
     ),
     module!(
-        "filter_tent_medium",
-        "filter_tent_medium.wgsl",
+        "filter_tent5",
+        "filter_tent5.wgsl",
         ["view", "texels", "gather"]
     ),
     module!(
-        "filter_tent_wide",
-        "filter_tent_wide.wgsl",
+        "filter_tent7",
+        "filter_tent7.wgsl",
         ["view", "texels", "gather"]
     ),
     module!(
-        "filter_penumbra",
-        "filter_penumbra.wgsl",
-        ["view", "texels", "gather", "filter_tent_narrow"]
+        "filter_pcss",
+        "filter_pcss.wgsl",
+        ["view", "texels", "gather", "filter_tent3"]
     ),
     module!(
-        "filter_penumbra_turned",
-        "filter_penumbra_turned.wgsl",
-        ["view", "texels", "filter_penumbra"]
+        "filter_pcss_rotated",
+        "filter_pcss_rotated.wgsl",
+        ["view", "texels", "filter_pcss"]
     ),
     module!("filter_direction", "filter_direction.wgsl", ["view"]),
     module!("cube_face", "cube_face.wgsl", []),

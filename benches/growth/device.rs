@@ -118,7 +118,7 @@ pub fn taps(stage: &Stage<'_>) {
     let mut filters = Filter::ALL.to_vec();
     filters.extend([
         Filter::DirectionStar { radius: 0.04 },
-        Filter::Penumbra { light_size: 0.1 },
+        Filter::Pcss { light_size: 0.1 },
         Filter::DirectionGrid { radius: 0.1 },
     ]);
     for filter in filters {

@@ -220,12 +220,12 @@ fn filters(extent: Extent) -> Vec<Filter> {
     let mut filters = Filter::ALL.to_vec();
     filters.extend([
         Filter::default(),
-        Filter::TentMedium { sharpness: 4.0 },
-        Filter::TentWide { sharpness: 5.0 },
-        Filter::Penumbra {
+        Filter::Tent5 { sharpness: 4.0 },
+        Filter::Tent7 { sharpness: 5.0 },
+        Filter::Pcss {
             light_size: SUN_DIAMETER_RADIANS as f32,
         },
-        Filter::PenumbraTurned {
+        Filter::PcssRotated {
             light_size: SUN_DIAMETER_RADIANS as f32,
         },
         Filter::DirectionGrid { radius: 0.1 },
@@ -234,9 +234,9 @@ fn filters(extent: Extent) -> Vec<Filter> {
     if extent == Extent::Full {
         filters.extend([
             Filter::Bilinear { sharpness: 2.0 },
-            Filter::TentNarrow { sharpness: 2.0 },
-            Filter::TentMedium { sharpness: 2.0 },
-            Filter::TentWide { sharpness: 3.0 },
+            Filter::Tent3 { sharpness: 2.0 },
+            Filter::Tent5 { sharpness: 2.0 },
+            Filter::Tent7 { sharpness: 3.0 },
         ]);
     }
     filters
@@ -249,11 +249,11 @@ pub fn filter_name(filter: Filter) -> String {
         Filter::Hardware => "hardware 2x2",
         Filter::Box => "box 3x3",
         Filter::Bilinear { .. } => "bilinear 2x2",
-        Filter::TentNarrow { .. } => "tent 3x3",
-        Filter::TentMedium { .. } => "tent 5x5",
-        Filter::TentWide { .. } => "tent 7x7",
-        Filter::Penumbra { .. } => "penumbra",
-        Filter::PenumbraTurned { .. } => "penumbra turned",
+        Filter::Tent3 { .. } => "tent 3x3",
+        Filter::Tent5 { .. } => "tent 5x5",
+        Filter::Tent7 { .. } => "tent 7x7",
+        Filter::Pcss { .. } => "penumbra",
+        Filter::PcssRotated { .. } => "penumbra turned",
         Filter::DirectionGrid { .. } => "direction grid",
         Filter::DirectionStar { .. } => "direction star",
         _ => "other",

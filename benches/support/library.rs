@@ -283,13 +283,11 @@ fn texels_touched(filter: Filter) -> u32 {
         Filter::Nearest => 1,
         Filter::Hardware | Filter::Bilinear { .. } => 4,
         Filter::Box => 9,
-        Filter::TentNarrow { .. } => 16,
-        Filter::TentMedium { .. } => 36,
-        Filter::TentWide { .. } => 64,
+        Filter::Tent3 { .. } => 16,
+        Filter::Tent5 { .. } => 36,
+        Filter::Tent7 { .. } => 64,
         // Four texels a gather.
-        Filter::Penumbra { .. } | Filter::PenumbraTurned { .. } => {
-            4 * filter.texture_instructions()
-        }
+        Filter::Pcss { .. } | Filter::PcssRotated { .. } => 4 * filter.texture_instructions(),
         // One texel a sample.
         _ => filter.texture_instructions(),
     }

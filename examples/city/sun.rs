@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
-    Coverage, DebugPicture, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    Coverage, DebugImage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
     ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowFrameDescriptor, ShadowReport,
     ShadowScene,
 };
@@ -178,7 +178,7 @@ impl Sun {
         size: [u32; 2],
     ) -> Result<Vec<u8>, Box<dyn Error>> {
         let encoder = gpu.device.create_command_encoder(&Default::default());
-        let layer = DebugPicture::Layer(layer);
+        let layer = DebugImage::Layer(layer);
         map_picture::draw(gpu, encoder, self.shadow.maps(), layer, size)
     }
 }

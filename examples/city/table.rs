@@ -35,8 +35,8 @@ impl Table {
                 view.texel_size_world.x,
                 view.texel_size_world.y,
                 view.depth_range_world,
-                view.worst_gap_world,
-                100.0 * view.slice.map_or(0.0, |slice| slice.share_of_map),
+                view.max_peter_panning_world,
+                100.0 * view.slice.map_or(0.0, |slice| slice.map_utilization),
             );
         }
         let _ = writeln!(

@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use wgpu_shadows::{DebugPicture, DebugView, ShadowMaps};
+use wgpu_shadows::{DebugImage, DebugView, ShadowMaps};
 
 use super::gpu::Gpu;
 
@@ -13,7 +13,7 @@ pub fn draw(
     gpu: &Gpu,
     mut encoder: wgpu::CommandEncoder,
     source: &ShadowMaps,
-    what: DebugPicture,
+    what: DebugImage,
     size: [u32; 2],
 ) -> Result<Vec<u8>, Box<dyn Error>> {
     let target = gpu.target(FORMAT, size, 1);

@@ -74,13 +74,13 @@ impl Options {
     /// The filter of directional lights.
     pub fn sun_filter(&self) -> Filter {
         self.angular_diameter
-            .map_or(self.filter, |light_size| Filter::Penumbra { light_size })
+            .map_or(self.filter, |light_size| Filter::Pcss { light_size })
     }
 
     /// The filter of spot and point lights.
     pub fn local_filter(&self) -> Filter {
         self.light_radius
-            .map_or(self.filter, |light_size| Filter::Penumbra { light_size })
+            .map_or(self.filter, |light_size| Filter::Pcss { light_size })
     }
 }
 
@@ -151,9 +151,9 @@ fn filter(text: &str) -> Result<Filter, String> {
         "hardware" => Ok(Filter::Hardware),
         "box" => Ok(Filter::Box),
         "bilinear" => Ok(Filter::Bilinear { sharpness: plain }),
-        "tent3" => Ok(Filter::TentNarrow { sharpness: plain }),
-        "tent5" => Ok(Filter::TentMedium { sharpness: plain }),
-        "tent7" => Ok(Filter::TentWide { sharpness: plain }),
+        "tent3" => Ok(Filter::Tent3 { sharpness: plain }),
+        "tent5" => Ok(Filter::Tent5 { sharpness: plain }),
+        "tent7" => Ok(Filter::Tent7 { sharpness: plain }),
         _ => Err("must be nearest, hardware, box, bilinear, tent3, tent5 or tent7".to_owned()),
     }
 }

@@ -48,9 +48,9 @@ fn maps_report(name: &str, report: &ShadowReport, lights: &[usize]) -> Value {
                 "culled": view.culled,
                 "texel_size_world": view.texel_size_world.to_array(),
                 "depth_range_world": view.depth_range_world,
-                "worst_gap_world": view.worst_gap_world,
-                "share_of_map": view.slice.map(|slice| slice.share_of_map),
-                "texels_across_picture": view.slice.map(|slice| slice.texels_across_picture.to_array()),
+                "max_peter_panning_world": view.max_peter_panning_world,
+                "map_utilization": view.slice.map(|slice| slice.map_utilization),
+                "texels_across_image": view.slice.map(|slice| slice.texels_across_image.to_array()),
             })
         })
         .collect();

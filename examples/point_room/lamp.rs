@@ -4,7 +4,7 @@ use std::error::Error;
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
-    Coverage, DebugPicture, Filter, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowBindings,
+    Coverage, DebugImage, Filter, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowBindings,
     ShadowBindingsDescriptor, ShadowCaster, ShadowError, ShadowFrameDescriptor, ShadowReport,
     ShadowScene,
 };
@@ -129,7 +129,7 @@ impl Lamp {
     pub fn draw_map(
         &self,
         gpu: &Gpu,
-        picture: DebugPicture,
+        picture: DebugImage,
         size: [u32; 2],
     ) -> Result<Vec<u8>, Box<dyn Error>> {
         let encoder = gpu.device.create_command_encoder(&Default::default());

@@ -25,7 +25,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use glam::Vec3;
-use wgpu_shadows::{DebugPicture, Filter, ShadowCaster};
+use wgpu_shadows::{DebugImage, Filter, ShadowCaster};
 
 use common::gpu::Gpu;
 use common::{arguments, picture};
@@ -93,11 +93,11 @@ fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
     let everything: Vec<&dyn ShadowCaster> = room.cubes_and_walls();
     lamp.record_for_all_of_space(&gpu, &room, Vec3::ZERO, &everything)?;
     let cross = [4 * CROSS_CELL, 3 * CROSS_CELL];
-    let pixels = lamp.draw_map(&gpu, DebugPicture::Cross, cross)?;
+    let pixels = lamp.draw_map(&gpu, DebugImage::Cross, cross)?;
     save("cross.png", &pixels, cross)?;
     println!("    {}", line::of(lamp.report()));
     let face = [lamp::MAP_SIZE; 2];
-    let pixels = lamp.draw_map(&gpu, DebugPicture::Layer(5), face)?;
+    let pixels = lamp.draw_map(&gpu, DebugImage::Layer(5), face)?;
     save("face.png", &pixels, face)?;
     println!("    the face that looks along -z, one pixel a texel");
     Ok(())

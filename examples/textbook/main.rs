@@ -33,7 +33,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use glam::DVec3;
 use wgpu_shadows::{
-    DebugPicture, DirectionalShadow, ShadowCaster, ShadowFrameDescriptor, ShadowScene,
+    DebugImage, DirectionalShadow, ShadowCaster, ShadowFrameDescriptor, ShadowScene,
 };
 
 use common::gpu::Gpu;
@@ -111,7 +111,7 @@ fn draw_map(
 ) -> Result<String, Box<dyn Error>> {
     let view = sun.maps().views().next().ok_or("nothing casts a shadow")?;
     let size = [view.map_size(); 2];
-    let layer = DebugPicture::Layer(view.layer());
+    let layer = DebugImage::Layer(view.layer());
     let pixels = map_picture::draw(gpu, encoder, sun.maps(), layer, size)?;
     picture::save(path, &pixels, size)?;
     let wrong = 100.0 * truth::compare_map(scene, view, &pixels);

@@ -80,17 +80,17 @@ fn filters(light: &Light, quick: bool) -> Vec<Filter> {
         Filter::Hardware,
         Filter::Bilinear { sharpness: 1.0 },
         Filter::default(),
-        Filter::TentMedium { sharpness: 4.0 },
+        Filter::Tent5 { sharpness: 4.0 },
     ];
     if !quick {
         filters.extend([
             Filter::Nearest,
             Filter::Box,
             Filter::Bilinear { sharpness: 2.0 },
-            Filter::TentNarrow { sharpness: 1.0 },
-            Filter::TentMedium { sharpness: 1.0 },
-            Filter::TentWide { sharpness: 1.0 },
-            Filter::TentWide { sharpness: 5.0 },
+            Filter::Tent3 { sharpness: 1.0 },
+            Filter::Tent5 { sharpness: 1.0 },
+            Filter::Tent7 { sharpness: 1.0 },
+            Filter::Tent7 { sharpness: 5.0 },
         ]);
     }
     if light.is_soft() {
@@ -101,7 +101,7 @@ fn filters(light: &Light, quick: bool) -> Vec<Filter> {
             } => angular_diameter_radians as f32,
             Light::Spot { radius_world, .. } | Light::Point { radius_world, .. } => radius_world,
         };
-        filters.push(Filter::Penumbra { light_size });
+        filters.push(Filter::Pcss { light_size });
     }
     filters
 }

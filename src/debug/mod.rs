@@ -10,4 +10,4 @@ mod cascade_tint;
 mod limits;
 mod view;
 
-pub use view::{DebugPicture, DebugView};
+pub use view::{DebugImage, DebugView};

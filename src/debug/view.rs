@@ -23,7 +23,7 @@ const FACES: u32 = 6;
 /// What of a light to draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum DebugPicture {
+pub enum DebugImage {
     /// One layer of the map, as it lies in the texture.
     Layer(u32),
     /// The six faces of a point light as an unfolded cross, four cells wide and three high: -x, -z, +x, +z in the middle row,
@@ -111,17 +111,17 @@ impl DebugView {
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         maps: &ShadowMaps,
-        picture: DebugPicture,
+        picture: DebugImage,
     ) -> Result<(), DebugViewError> {
         self.check_device(maps)?;
         let sampled = maps.sampled();
         let layers = sampled.view_count;
         let (pipeline, first_layer) = match picture {
-            DebugPicture::Layer(layer) => (&self.layer, layer),
-            DebugPicture::Cross => (&self.cross, 0),
-            DebugPicture::PoolCross(index) => (&self.cross, index.saturating_mul(FACES)),
+            DebugImage::Layer(layer) => (&self.layer, layer),
+            DebugImage::Cross => (&self.cross, 0),
+            DebugImage::PoolCross(index) => (&self.cross, index.saturating_mul(FACES)),
         };
-        let is_cross = !matches!(picture, DebugPicture::Layer(_));
+        let is_cross = !matches!(picture, DebugImage::Layer(_));
         if is_cross && sampled.selection != Selection::CubeFace {
             return Err(DebugViewError::NotACube { layers });
         }

@@ -166,7 +166,7 @@ fn checked_spacing(
     let extent = || match slice {
         // This is the extent of the slice, not of what is seen: that may be a corner of an object, which needs no finer
         // texels than the rest of the image.
-        Some(slice) if limits.stability == Stability::Rungs => {
+        Some(slice) if limits.stability == Stability::TightFit => {
             let (depth_near, depth_far) = slice.between;
             let sphere = slice.camera.slice_sphere(depth_near, depth_far);
             (2.0 * sphere.radius).min(widest_given(input))
@@ -200,8 +200,8 @@ fn camera_slice<'a>(
     };
     let camera = cameras.first()?;
     let (near, far) = match limits.stability {
-        Stability::Rungs => (visible.depth_near, visible.depth_far),
-        Stability::Rotation => {
+        Stability::TightFit => (visible.depth_near, visible.depth_far),
+        Stability::BoundingSphere => {
             let ranges = cameras.iter().map(CameraFrustum::depth_range);
             ranges.fold((f64::INFINITY, f64::NEG_INFINITY), |all, range| {
                 (all.0.min(range.0), all.1.max(range.1))
@@ -247,8 +247,8 @@ fn required_box(
                     continue;
                 }
                 required.union(&match limits.stability {
-                    Stability::Rungs => seen,
-                    Stability::Rotation => around_slice(input, camera.1, between, seen),
+                    Stability::TightFit => seen,
+                    Stability::BoundingSphere => around_slice(input, camera.1, between, seen),
                 });
             }
         }
@@ -314,7 +314,7 @@ fn fit_bounds(
     let follows_casters = match input.region {
         Region::Bounds(_) => false,
         Region::Everything => true,
-        Region::Cameras(_) => limits.stability == Stability::Rungs,
+        Region::Cameras(_) => limits.stability == Stability::TightFit,
     };
     if follows_casters {
         covered.min = required.min.max(shadows.min).with_z(required.min.z);

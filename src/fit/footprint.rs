@@ -15,24 +15,24 @@ use crate::fit::visible::SeenBounds;
 pub struct SliceReport {
     /// Is the depth along the view, in world units, at which the cascade's slice begins. For the first cascade that is
     /// the nearest visible receiver, or the camera's near plane under
-    /// [`Stability::Rotation`](crate::Stability::Rotation).
+    /// [`Stability::BoundingSphere`](crate::Stability::BoundingSphere).
     pub depth_near: f32,
     /// Is the depth along the view, in world units, at which the slice ends.
     pub depth_far: f32,
     /// Is the share of the map's texels that fall on the slice, within the bounds of what is visible: 0 to 1. The rest
     /// of the map, most of it where this is small, is behind the camera or beside its image.
-    pub share_of_map: f32,
+    pub map_utilization: f32,
     /// Counts the texels across the height of the image, on a surface that faces both light and camera: x is the fewest
     /// (coarser axis, nearest depth) and y the most (finer axis, farthest depth). The counts are infinite where the
     /// image has no end at that depth, as under an oblique projection.
-    pub texels_across_picture: Vec2,
+    pub texels_across_image: Vec2,
 }
 
 impl SliceReport {
     /// Returns the texels per pixel of an image that is `image_height_pixels` pixels high: x is the fewest and y the
     /// most. Below 1, edges show their texels; far above 1, the map could be smaller.
     pub fn texels_per_pixel(&self, image_height_pixels: u32) -> Vec2 {
-        self.texels_across_picture / image_height_pixels as f32
+        self.texels_across_image / image_height_pixels as f32
     }
 }
 
@@ -82,8 +82,8 @@ impl Slice<'_> {
         SliceReport {
             depth_near: near as f32,
             depth_far: far as f32,
-            share_of_map: share.clamp(0.0, 1.0) as f32,
-            texels_across_picture: texels.as_vec2(),
+            map_utilization: share.clamp(0.0, 1.0) as f32,
+            texels_across_image: texels.as_vec2(),
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::check::in_range;
 ///
 /// Depths are along the camera's view, in world units. They run from the nearest visible receiver (not the camera's
 /// near plane) to the farthest one or the camera's distance limit; under
-/// [`Stability::Rotation`](crate::Stability::Rotation) they run from the camera's near plane to its far plane or
+/// [`Stability::BoundingSphere`](crate::Stability::BoundingSphere) they run from the camera's near plane to its far plane or
 /// distance limit. A cascade that is too long for its map shows coarse texels at its near end. Numbers out of range
 /// make [`DirectionalShadow::new`](crate::DirectionalShadow::new) return [`ShadowError::OutOfRange`].
 ///

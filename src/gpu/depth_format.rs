@@ -13,7 +13,7 @@ pub enum DepthFormat {
     Float32,
     /// Stores 16-bit steps, 2 bytes a texel, for directional lights alone. A step is 1/65535 of the depth range (100 m:
     /// 1.5 mm, 1 km: 15 mm). The bias grows by one step, and the gap that it can leave by two
-    /// ([`ViewReport::worst_gap_world`](crate::ViewReport::worst_gap_world)). The step is invisible while it is below a
+    /// ([`ViewReport::max_peter_panning_world`](crate::ViewReport::max_peter_panning_world)). The step is invisible while it is below a
     /// quarter of a texel, at ranges under some 16 000 texel sizes; beyond that, shadows first go missing at contacts.
     ///
     /// Local lights keep 32 bits: the step of a perspective depth grows with the square of the distance, to metres at

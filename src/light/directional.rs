@@ -53,7 +53,7 @@ impl Default for DirectionalShadowDescriptor<'_> {
             filter: Filter::default(),
             bias: Bias::Auto,
             blend: 0.0,
-            stability: Stability::Rungs,
+            stability: Stability::TightFit,
             depth_format: DepthFormat::Float32,
         }
     }
@@ -70,7 +70,7 @@ impl DirectionalShadowDescriptor<'_> {
         filter: Filter::Bilinear { sharpness: 1.0 },
         bias: Bias::Auto,
         blend: 0.0,
-        stability: Stability::Rungs,
+        stability: Stability::TightFit,
         depth_format: DepthFormat::Float32,
     };
 
@@ -78,7 +78,7 @@ impl DirectionalShadowDescriptor<'_> {
     /// default and [`CHEAP`](Self::CHEAP), by `cargo bench --bench speed_vs_error`: none of the three is beaten at its cost.
     pub const ACCURATE: Self = Self {
         map_size: 4096,
-        filter: Filter::TentMedium { sharpness: 4.0 },
+        filter: Filter::Tent5 { sharpness: 4.0 },
         ..Self::CHEAP
     };
 }
@@ -237,8 +237,9 @@ impl DirectionalShadow {
             let (near, far) = camera.depth_range();
             check::in_range(
                 "CameraView::max_distance",
-                "finite under Stability::Rotation, where the projection has no far plane",
-                self.limits.stability == Stability::Rungs || (near.is_finite() && far.is_finite()),
+                "finite under Stability::BoundingSphere, where the projection has no far plane",
+                self.limits.stability == Stability::TightFit
+                    || (near.is_finite() && far.is_finite()),
                 camera.max_distance(),
             )?;
         }

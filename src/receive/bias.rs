@@ -96,7 +96,7 @@ impl Bias {
 
     /// Height in world units above which a caster that lies on a surface always casts its full shadow onto it, at the worst
     /// angle of the light: the size of the gap that the bias can leave.
-    pub(crate) fn worst_gap_world(self, filter: Filter, view: &ShadowView) -> f32 {
+    pub(crate) fn max_peter_panning_world(self, filter: Filter, view: &ShadowView) -> f32 {
         let texel = f64::from(view.texel_size_world().max_element());
         // Once for the receiver, which gives way by so much, and once for the caster, which may lie that much lower.
         let rounding = 2.0 * (view.depth_error_world() + view.position_error_world());

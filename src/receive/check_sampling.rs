@@ -25,7 +25,7 @@ pub(crate) fn check_filter(field: &'static str, filter: Filter) -> Result<(), Sh
             radius,
         );
     }
-    if let Filter::Penumbra { light_size } | Filter::PenumbraTurned { light_size } = filter {
+    if let Filter::Pcss { light_size } | Filter::PcssRotated { light_size } = filter {
         return in_range(
             field,
             "of a finite light size above 0",

@@ -11,10 +11,10 @@ const PENUMBRA_REACH_TEXELS: f64 = 33.0;
 /// | `Hardware` | 4 | 1 comparison | 1 |
 /// | `Box` | 9 | 4 gathers | 1.5 |
 /// | `Bilinear` | 4 | 1 gather | 1 |
-/// | `TentNarrow` | 16 | 4 gathers | 2 |
-/// | `TentMedium` | 36 | 9 gathers | 3 |
-/// | `TentWide` | 64 | 16 gathers | 4 |
-/// | `Penumbra`, `PenumbraTurned` | 240 | 60 gathers | 32 |
+/// | `Tent3` | 16 | 4 gathers | 2 |
+/// | `Tent5` | 36 | 9 gathers | 3 |
+/// | `Tent7` | 64 | 16 gathers | 4 |
+/// | `Pcss`, `PcssRotated` | 240 | 60 gathers | 32 |
 /// | `DirectionGrid` | 64 | 64 gathers | 0.5 a sample |
 /// | `DirectionStar` | 20 | 20 gathers | 0.5 a sample |
 ///
@@ -39,17 +39,17 @@ pub enum Filter {
         sharpness: f32,
     },
     /// Kernel 1 2 1 ("3×3") over 4×4 gathered texels.
-    TentNarrow {
+    Tent3 {
         /// Edge sharpness, at least 1.
         sharpness: f32,
     },
     /// Kernel 1 3 4 3 1 ("5×5") over 6×6 gathered texels.
-    TentMedium {
+    Tent5 {
         /// Edge sharpness, at least 1.
         sharpness: f32,
     },
     /// Kernel 1 5 12 16 12 5 1 ("7×7") over 8×8 gathered texels.
-    TentWide {
+    Tent7 {
         /// Edge sharpness, at least 1.
         sharpness: f32,
     },
@@ -57,21 +57,21 @@ pub enum Filter {
     /// sharp where caster and receiver touch, and as wide as the real penumbra away from it, up to 32 texels.
     ///
     /// Where a penumbra would be wider than that, it stays at 32 texels: a smaller map then shows more of it.
-    Penumbra {
+    Pcss {
         /// For directional lights the angular diameter in radians (the sun's is 0.0093), below π; for local lights the radius
         /// in world units. Above 0 and finite; too large a value blurs shadows away from their casters, too small a one makes
         /// them hard.
         light_size: f32,
     },
-    /// `Penumbra` with its taps turned by an angle of each half texel's own: grain in place of bands, for lights so large that
+    /// `Pcss` with its taps turned by an angle of each half texel's own: grain in place of bands, for lights so large that
     /// penumbrae span some ten texels and more. The grain is fixed in the world and does not swim when the camera moves.
-    PenumbraTurned {
-        /// As for `Penumbra`.
+    PcssRotated {
+        /// As for `Pcss`.
         light_size: f32,
     },
     /// Point lights only: the textbook's 4×4×4 nearest comparisons in a cube of directions around the receiver's own.
     ///
-    /// A blur of constant width in the world, in steps of 1/64: for a soft look, at sixteen times the lookups of `TentNarrow`
+    /// A blur of constant width in the world, in steps of 1/64: for a soft look, at sixteen times the lookups of `Tent3`
     /// and more error against hard truth.
     DirectionGrid {
         /// Half the side of the cube in world units, above 0; the textbook has 0.1.
@@ -88,10 +88,10 @@ pub enum Filter {
 }
 
 impl Default for Filter {
-    /// `TentNarrow` sharpened three times: of the filters here the least error against ray-traced hard shadows for its cost
+    /// `Tent3` sharpened three times: of the filters here the least error against ray-traced hard shadows for its cost
     /// (`cargo bench --bench speed_vs_error`).
     fn default() -> Self {
-        Self::TentNarrow { sharpness: 3.0 }
+        Self::Tent3 { sharpness: 3.0 }
     }
 }
 
@@ -102,9 +102,9 @@ impl Filter {
         Self::Hardware,
         Self::Box,
         Self::Bilinear { sharpness: 1.0 },
-        Self::TentNarrow { sharpness: 1.0 },
-        Self::TentMedium { sharpness: 1.0 },
-        Self::TentWide { sharpness: 1.0 },
+        Self::Tent3 { sharpness: 1.0 },
+        Self::Tent5 { sharpness: 1.0 },
+        Self::Tent7 { sharpness: 1.0 },
     ];
 
     /// Greatest distance per axis, in texels, from the place looked up to the centre of a texel that counts.
@@ -113,10 +113,10 @@ impl Filter {
             Self::Nearest | Self::DirectionGrid { .. } | Self::DirectionStar { .. } => 0.5,
             Self::Hardware | Self::Bilinear { .. } => 1.0,
             Self::Box => 1.5,
-            Self::TentNarrow { .. } => 2.0,
-            Self::TentMedium { .. } => 3.0,
-            Self::TentWide { .. } => 4.0,
-            Self::Penumbra { .. } | Self::PenumbraTurned { .. } => PENUMBRA_REACH_TEXELS,
+            Self::Tent3 { .. } => 2.0,
+            Self::Tent5 { .. } => 3.0,
+            Self::Tent7 { .. } => 4.0,
+            Self::Pcss { .. } | Self::PcssRotated { .. } => PENUMBRA_REACH_TEXELS,
         }
     }
 
@@ -124,11 +124,11 @@ impl Filter {
     pub const fn sharpness(self) -> f32 {
         match self {
             Self::Bilinear { sharpness }
-            | Self::TentNarrow { sharpness }
-            | Self::TentMedium { sharpness }
-            | Self::TentWide { sharpness } => sharpness,
+            | Self::Tent3 { sharpness }
+            | Self::Tent5 { sharpness }
+            | Self::Tent7 { sharpness } => sharpness,
             // The tent that stands in where a penumbra is narrower than a texel.
-            Self::Penumbra { .. } | Self::PenumbraTurned { .. } => 3.0,
+            Self::Pcss { .. } | Self::PcssRotated { .. } => 3.0,
             Self::Nearest
             | Self::Hardware
             | Self::Box
@@ -137,10 +137,10 @@ impl Filter {
         }
     }
 
-    /// Size of the light for [`Filter::Penumbra`] and [`Filter::PenumbraTurned`]; 0 for the others.
+    /// Size of the light for [`Filter::Pcss`] and [`Filter::PcssRotated`]; 0 for the others.
     pub const fn light_size(self) -> f32 {
         match self {
-            Self::Penumbra { light_size } | Self::PenumbraTurned { light_size } => light_size,
+            Self::Pcss { light_size } | Self::PcssRotated { light_size } => light_size,
             _ => 0.0,
         }
     }
@@ -171,10 +171,10 @@ impl Filter {
     pub const fn texture_instructions(self) -> u32 {
         match self {
             Self::Nearest | Self::Hardware | Self::Bilinear { .. } => 1,
-            Self::Box | Self::TentNarrow { .. } => 4,
-            Self::TentMedium { .. } => 9,
-            Self::TentWide { .. } => 16,
-            Self::Penumbra { .. } | Self::PenumbraTurned { .. } => 60,
+            Self::Box | Self::Tent3 { .. } => 4,
+            Self::Tent5 { .. } => 9,
+            Self::Tent7 { .. } => 16,
+            Self::Pcss { .. } | Self::PcssRotated { .. } => 60,
             Self::DirectionGrid { .. } => 64,
             Self::DirectionStar { .. } => 20,
         }
@@ -189,11 +189,11 @@ impl Filter {
             Self::Hardware => ("filter_hardware", FilterSampler::Comparison),
             Self::Box => ("filter_box", FilterSampler::Point),
             Self::Bilinear { .. } => ("filter_bilinear", FilterSampler::Point),
-            Self::TentNarrow { .. } => ("filter_tent_narrow", FilterSampler::Point),
-            Self::TentMedium { .. } => ("filter_tent_medium", FilterSampler::Point),
-            Self::TentWide { .. } => ("filter_tent_wide", FilterSampler::Point),
-            Self::Penumbra { .. } => ("filter_penumbra", FilterSampler::Point),
-            Self::PenumbraTurned { .. } => ("filter_penumbra_turned", FilterSampler::Point),
+            Self::Tent3 { .. } => ("filter_tent3", FilterSampler::Point),
+            Self::Tent5 { .. } => ("filter_tent5", FilterSampler::Point),
+            Self::Tent7 { .. } => ("filter_tent7", FilterSampler::Point),
+            Self::Pcss { .. } => ("filter_pcss", FilterSampler::Point),
+            Self::PcssRotated { .. } => ("filter_pcss_rotated", FilterSampler::Point),
         }
     }
 }

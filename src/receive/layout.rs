@@ -1,9 +1,9 @@
 //! The bind group of a set of lights: samplers first, then uniforms and map of each light.
 
-use crate::receive::view_uniform_bytes;
 use crate::receive::filter::FilterSampler;
 use crate::receive::sampled_maps::SampledMaps;
 use crate::receive::texel_access::TexelAccess;
+use crate::receive::view_uniform_bytes;
 
 /// Lights by name.
 pub(crate) type NamedMaps<'a> = [(&'a str, SampledMaps<'a>)];

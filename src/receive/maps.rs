@@ -339,7 +339,7 @@ fn view_report(draws: &ViewDraws, sampling: &Sampling, casters: &FrameCasters<'_
         culled: (casters.len() - draws.casters.len()) as u32,
         texel_size_world: draws.view.texel_size_world(),
         depth_range_world: draws.view.depth_range_world(),
-        worst_gap_world: sampling.worst_gap_world(&draws.view),
+        max_peter_panning_world: sampling.max_peter_panning_world(&draws.view),
         slice: None,
     }
 }

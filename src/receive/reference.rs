@@ -117,8 +117,8 @@ pub fn visibility(filter: Filter, map: &DepthLayer<'_>, receiver: &Receiver) -> 
         return 1.0;
     }
     match filter {
-        Filter::Penumbra { .. } => return penumbra(map, receiver, DVec2::X),
-        Filter::PenumbraTurned { .. } => return penumbra(map, receiver, turn(receiver)),
+        Filter::Pcss { .. } => return penumbra(map, receiver, DVec2::X),
+        Filter::PcssRotated { .. } => return penumbra(map, receiver, turn(receiver)),
         _ => {}
     }
     let mut receiver = *receiver;
@@ -177,7 +177,7 @@ fn sharpened(visibility: f64, sharpness: f64) -> f64 {
     if ramp.is_nan() { visibility } else { ramp }.clamp(0.0, 1.0)
 }
 
-/// `wgsl/filter_penumbra.wgsl`.
+/// `wgsl/filter_pcss.wgsl`.
 fn penumbra(map: &DepthLayer<'_>, receiver: &Receiver, turn: DVec2) -> f64 {
     const REACH: f64 = 32.0;
     let widest =
@@ -220,7 +220,7 @@ fn penumbra(map: &DepthLayer<'_>, receiver: &Receiver, turn: DVec2) -> f64 {
     hard + (soft - hard) * share
 }
 
-/// Cosine and sine by which the half texel of a receiver turns its patterns, as `wgsl/filter_penumbra_turned.wgsl`.
+/// Cosine and sine by which the half texel of a receiver turns its patterns, as `wgsl/filter_pcss_rotated.wgsl`.
 fn turn(receiver: &Receiver) -> DVec2 {
     let half_texel = (receiver.texel.max(DVec2::ZERO) * 2.0).as_uvec2();
     let first = UVec2::new(receiver.grid & 0xffff, receiver.grid >> 16);
@@ -259,11 +259,11 @@ fn kernel(filter: Filter) -> Kernel {
         // A penumbra is made of bilinear lookups.
         Filter::Hardware
         | Filter::Bilinear { .. }
-        | Filter::Penumbra { .. }
-        | Filter::PenumbraTurned { .. } => Kernel::Bilinear(&[1.0]),
-        Filter::TentNarrow { .. } => Kernel::Bilinear(&[1.0, 2.0, 1.0]),
-        Filter::TentMedium { .. } => Kernel::Bilinear(&[1.0, 3.0, 4.0, 3.0, 1.0]),
-        Filter::TentWide { .. } => Kernel::Bilinear(&[1.0, 5.0, 12.0, 16.0, 12.0, 5.0, 1.0]),
+        | Filter::Pcss { .. }
+        | Filter::PcssRotated { .. } => Kernel::Bilinear(&[1.0]),
+        Filter::Tent3 { .. } => Kernel::Bilinear(&[1.0, 2.0, 1.0]),
+        Filter::Tent5 { .. } => Kernel::Bilinear(&[1.0, 3.0, 4.0, 3.0, 1.0]),
+        Filter::Tent7 { .. } => Kernel::Bilinear(&[1.0, 5.0, 12.0, 16.0, 12.0, 5.0, 1.0]),
     }
 }
 

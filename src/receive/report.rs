@@ -41,7 +41,7 @@ pub struct ViewReport {
     pub depth_range_world: f32,
     /// Height in world units above which a caster that lies on a surface always casts onto it: the worst gap (peter-panning)
     /// that the light's bias can leave, at the worst angle.
-    pub worst_gap_world: f32,
+    pub max_peter_panning_world: f32,
     /// For a cascade of a camera's view: its slice, and how much of the map falls on it.
     pub slice: Option<SliceReport>,
 }
@@ -58,7 +58,7 @@ impl ViewReport {
             culled,
             texel_size_world: Vec2::ZERO,
             depth_range_world: 0.0,
-            worst_gap_world: 0.0,
+            max_peter_panning_world: 0.0,
             slice: None,
         }
     }

@@ -98,9 +98,9 @@ impl Sampling {
 
     /// Height in world units above which a caster that lies on a surface always casts onto it: what the bias leaves open, and
     /// two steps of the map's format: one by which a receiver is set back, and one by which the caster may be stored too far.
-    pub fn worst_gap_world(&self, view: &ShadowView) -> f32 {
+    pub fn max_peter_panning_world(&self, view: &ShadowView) -> f32 {
         let step = self.depth_format.step_ndc() * f64::from(view.depth_range_world());
-        self.bias.worst_gap_world(self.filter, view) + 2.0 * step as f32
+        self.bias.max_peter_panning_world(self.filter, view) + 2.0 * step as f32
     }
 
     /// Texels by which a lookup may leave the place of its receiver: the filter's reach, the way that an offset along the

@@ -2,7 +2,7 @@
 //! message.
 
 use wgpu_shadows::{
-    BindingsError, DebugPicture, DebugView, DebugViewError, DirectionalShadow,
+    BindingsError, DebugImage, DebugView, DebugViewError, DirectionalShadow,
     DirectionalShadowDescriptor, ShadowBindings, ShadowBindingsDescriptor, shader,
 };
 
@@ -191,7 +191,7 @@ fn debug_views_that_cannot_be_drawn() {
     {
         let mut pass = color_pass(&mut encoder, &target);
         let mut draw = |picture| view.draw(&mut pass, sun.maps(), picture);
-        let error = draw(DebugPicture::Layer(2)).expect_err("no layer");
+        let error = draw(DebugImage::Layer(2)).expect_err("no layer");
         assert_eq!(
             error,
             DebugViewError::Layer {
@@ -201,7 +201,7 @@ fn debug_views_that_cannot_be_drawn() {
         );
         let message = "DebugView: layer must be below the map's 2 layers, got 2";
         assert_eq!(error.to_string(), message);
-        let error = draw(DebugPicture::Cross).expect_err("no cube");
+        let error = draw(DebugImage::Cross).expect_err("no cube");
         assert_eq!(error, DebugViewError::NotACube { layers: 2 });
         assert_eq!(
             error.to_string(),

@@ -130,7 +130,7 @@ impl Plate {
             receivers: &[],
         };
         let report = record(gpu, shadow, &frame);
-        let gap = f64::from(report.views[0].worst_gap_world);
+        let gap = f64::from(report.views[0].max_peter_panning_world);
         (gap, probe.ask(gpu, &self.points))
     }
 }

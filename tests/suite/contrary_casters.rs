@@ -181,7 +181,7 @@ fn reports_of_any_numbers_are_counted_without_a_panic() {
         culled: 0,
         texel_size_world: glam::Vec2::ONE,
         depth_range_world: 1.0,
-        worst_gap_world: 0.0,
+        max_peter_panning_world: 0.0,
         slice: None,
     };
     let report = ShadowReport {

@@ -4,7 +4,7 @@
 use glam::{DVec3, Vec3};
 use image::RgbaImage;
 use wgpu_shadows::{
-    Aabb, DebugPicture, DebugView, DebugViewError, DirectionalLight, DirectionalShadow,
+    Aabb, DebugImage, DebugView, DebugViewError, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, OmniLight, OmniShadow, OmniShadowDescriptor, OmniShadowPool,
     PoolDescriptor, PoolLight, ShadowMaps, SpotLight, SpotShadow, SpotShadowDescriptor,
 };
@@ -23,7 +23,7 @@ use crate::support::scene::{Mesh, Scene};
 fn picture(
     gpu: &Gpu,
     source: &ShadowMaps,
-    picture: DebugPicture,
+    picture: DebugImage,
     [width, height]: [u32; 2],
 ) -> Result<RgbaImage, DebugViewError> {
     let view = DebugView::new(&gpu.device, COLOR)?;
@@ -76,7 +76,7 @@ fn sun() -> (DirectionalShadow, Vec<f32>) {
 #[test]
 fn a_sun_shows_its_depth() {
     let (shadow, depths) = sun();
-    let layer = picture(gpu(), shadow.maps(), DebugPicture::Layer(0), [MAP; 2]);
+    let layer = picture(gpu(), shadow.maps(), DebugImage::Layer(0), [MAP; 2]);
     let image = layer.expect("a layer of the map");
     for (index, depth) in (0..).zip(&depths) {
         let pixel = [index % MAP, index / MAP];
@@ -85,7 +85,7 @@ fn a_sun_shows_its_depth() {
     let steps = depths.iter().map(|depth| (depth * 255.0) as u32);
     assert!(steps.collect::<std::collections::BTreeSet<_>>().len() > 20);
     // The second cascade holds nothing.
-    let empty = picture(gpu(), shadow.maps(), DebugPicture::Layer(1), [MAP; 2]);
+    let empty = picture(gpu(), shadow.maps(), DebugImage::Layer(1), [MAP; 2]);
     let empty = empty.expect("a layer of the map");
     assert!(empty.pixels().all(|pixel| pixel.0 == [255; 4]));
 }
@@ -114,7 +114,7 @@ fn a_spot_shows_distances() {
         receivers: &[Aabb::new(Vec3::splat(-9.0), Vec3::splat(9.0))],
     };
     record_spot(gpu, &mut shadow, &frame).expect("a valid frame");
-    let layer = picture(gpu, shadow.maps(), DebugPicture::Layer(0), [MAP; 2]);
+    let layer = picture(gpu, shadow.maps(), DebugImage::Layer(0), [MAP; 2]);
     let image = layer.expect("a layer of the map");
     let view = shadow.maps().views().next().expect("a view");
     let anchor_from_clip = view.clip_from_anchor().as_dmat4().inverse();
@@ -213,7 +213,7 @@ fn pixel(cell: [f32; 2]) -> [u32; 2] {
 fn a_cross_shows_the_walls_of_a_room() {
     let gpu = gpu();
     let shadow = lamp(gpu);
-    let image = picture(gpu, shadow.maps(), DebugPicture::Cross, CROSS).expect("a cube");
+    let image = picture(gpu, shadow.maps(), DebugImage::Cross, CROSS).expect("a cube");
     for (wall, cell) in WALLS.into_iter().zip(CELLS) {
         // Straight ahead; the middle of an odd cell is the middle of a pixel, and half a texel from a texel's own.
         assert_grey(&image, pixel(cell), f64::from(wall / RANGE), "wall");
@@ -246,7 +246,7 @@ fn a_cross_shows_the_walls_of_a_room() {
 fn a_pool_shows_one_of_its_lights() {
     let gpu = gpu();
     let alone = lamp(gpu);
-    let wanted = picture(gpu, alone.maps(), DebugPicture::Cross, CROSS).expect("a cube");
+    let wanted = picture(gpu, alone.maps(), DebugImage::Cross, CROSS).expect("a cube");
     let descriptor = PoolDescriptor {
         capacity: 3,
         map_size: 256,
@@ -271,9 +271,9 @@ fn a_pool_shows_one_of_its_lights() {
     };
     submitted(gpu, |encoder| pool.record_frame(encoder, &frame)).expect("a valid frame");
     let draw = |what| picture(gpu, pool.maps(), what, CROSS);
-    assert!(draw(DebugPicture::PoolCross(1)).expect("a light") == wanted);
+    assert!(draw(DebugImage::PoolCross(1)).expect("a light") == wanted);
     // A slot without a light is white all over its cells.
-    let empty = draw(DebugPicture::PoolCross(0)).expect("a slot");
+    let empty = draw(DebugImage::PoolCross(0)).expect("a slot");
     assert!(
         CELLS
             .map(pixel)
@@ -281,7 +281,7 @@ fn a_pool_shows_one_of_its_lights() {
             .all(|[x, y]| empty.get_pixel(*x, *y).0 == [255; 4])
     );
     for index in [3, 4, u32::MAX] {
-        let refused = draw(DebugPicture::PoolCross(index)).expect_err("no such slot");
+        let refused = draw(DebugImage::PoolCross(index)).expect_err("no such slot");
         assert!(matches!(refused, DebugViewError::Layer { layers: 18, .. }));
     }
 }
@@ -292,15 +292,15 @@ fn what_cannot_be_drawn_is_refused() {
     let (shadow, _) = sun();
     let draw = |what| picture(gpu, shadow.maps(), what, [8; 2]);
     for layer in [2, 3, u32::MAX] {
-        let refused = draw(DebugPicture::Layer(layer));
+        let refused = draw(DebugImage::Layer(layer));
         assert_eq!(
             refused.err(),
             Some(DebugViewError::Layer { layer, layers: 2 })
         );
     }
     let not_a_cube = DebugViewError::NotACube { layers: 2 };
-    assert_eq!(draw(DebugPicture::Cross).err(), Some(not_a_cube.clone()));
-    assert_eq!(draw(DebugPicture::PoolCross(0)).err(), Some(not_a_cube));
+    assert_eq!(draw(DebugImage::Cross).err(), Some(not_a_cube.clone()));
+    assert_eq!(draw(DebugImage::PoolCross(0)).err(), Some(not_a_cube));
     use wgpu::TextureFormat::{
         Bc1RgbaUnorm, Depth32Float, R32Uint, Rgba8Sint, Rgba8Snorm, Stencil8,
     };

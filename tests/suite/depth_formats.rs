@@ -92,7 +92,7 @@ fn sixteen_bits_hold_the_same_depths_to_a_step() {
     }
     let allocated = found[0].0.bytes_held;
     assert_eq!(narrow.bytes_held * 2, allocated);
-    let gaps = [wide, narrow].map(|report| report.views[0].worst_gap_world);
+    let gaps = [wide, narrow].map(|report| report.views[0].max_peter_panning_world);
     let wanted = 2.0 * narrow.views[0].depth_range_world * step;
     assert!((gaps[1] - gaps[0] - wanted).abs() <= 4.0 * f32::EPSILON * gaps[1]);
 }

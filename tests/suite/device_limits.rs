@@ -6,7 +6,7 @@ use std::fmt::Debug;
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
     Aabb, BindingsError, CasterError, CasterPipeline, CasterPipelineDescriptor, CasterVertex,
-    DebugPicture, DebugView, DebugViewError, DirectionalLight, DirectionalShadow,
+    DebugImage, DebugView, DebugViewError, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, ModelTransform, OmniShadow, OmniShadowDescriptor, OmniShadowPool,
     PoolDescriptor, PositionAttribute, ShadowBindings, ShadowBindingsDescriptor, ShadowError,
     ShadowViewUniform, SpotShadow, SpotShadowDescriptor, SpotShadowPool,
@@ -156,7 +156,7 @@ fn all(gpu: &Gpu, what: &str) -> usize {
         {
             let mut pass = color_pass(&mut encoder, &target);
             for light in &lights {
-                view.draw(&mut pass, light, DebugPicture::Layer(0))
+                view.draw(&mut pass, light, DebugImage::Layer(0))
                     .expect("a picture");
             }
         }

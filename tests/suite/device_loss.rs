@@ -3,7 +3,7 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, BindingsError, CasterError, CasterPipeline, CasterPipelineDescriptor, DebugPicture,
+    Aabb, BindingsError, CasterError, CasterPipeline, CasterPipelineDescriptor, DebugImage,
     DebugView, DebugViewError, DeviceRefusal, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, OmniLight, OmniShadow, OmniShadowDescriptor, OmniShadowPool,
     PoolDescriptor, PoolLight, ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowError,
@@ -241,7 +241,7 @@ fn a_lost_device_makes_nothing() {
     );
     let mut encoder = lost.encoder();
     let mut pass = color_pass(&mut encoder, &target);
-    let picture = DebugPicture::Layer(0);
+    let picture = DebugImage::Layer(0);
     let error = all.view.draw(&mut pass, all.sun.maps(), picture);
     let wanted = DebugViewError::Device {
         object: "the bind group of a debug view",
@@ -313,7 +313,7 @@ fn a_light_of_another_device_is_refused() {
     let mut encoder = there.encoder();
     {
         let mut pass = color_pass(&mut encoder, &target);
-        let picture = DebugPicture::Layer(0);
+        let picture = DebugImage::Layer(0);
         let error = view.draw(&mut pass, all.sun.maps(), picture);
         assert!(
             matches!(

@@ -17,8 +17,8 @@ const BIASES: [Bias; 3] = [
 
 /// Filters that every kind of light takes beside [`Filter::ALL`].
 const SOFT: [Filter; 2] = [
-    Filter::Penumbra { light_size: 0.01 },
-    Filter::PenumbraTurned { light_size: 0.01 },
+    Filter::Pcss { light_size: 0.01 },
+    Filter::PcssRotated { light_size: 0.01 },
 ];
 
 /// Filters that only point lights take.

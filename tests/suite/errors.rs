@@ -18,7 +18,7 @@ fn descriptors_out_of_range() {
         ..Default::default()
     };
     let sharpness = |sharpness| DirectionalShadowDescriptor {
-        filter: Filter::TentMedium { sharpness },
+        filter: Filter::Tent5 { sharpness },
         ..good
     };
     let bias = |constant, slope| DirectionalShadowDescriptor {

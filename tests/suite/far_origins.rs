@@ -135,9 +135,9 @@ impl Case {
         let bounds = Aabb::new(Vec3::splat(-4.5 * unit), Vec3::splat(4.5 * unit));
         let near = camera.with_max_distance(20.0 * unit);
         [
-            (1, Stability::Rungs, Coverage::Bounds(bounds)),
-            (2, Stability::Rungs, Coverage::Camera(camera)),
-            (1, Stability::Rotation, Coverage::Camera(near)),
+            (1, Stability::TightFit, Coverage::Bounds(bounds)),
+            (2, Stability::TightFit, Coverage::Camera(camera)),
+            (1, Stability::BoundingSphere, Coverage::Camera(near)),
         ]
     }
 

@@ -36,11 +36,11 @@ const POINTS: usize = 4000;
 pub(super) fn filters() -> impl Iterator<Item = Filter> {
     Filter::ALL.into_iter().chain([
         Filter::Bilinear { sharpness: 4.0 },
-        Filter::TentNarrow { sharpness: 3.0 },
-        Filter::TentMedium { sharpness: 2.0 },
-        Filter::TentWide { sharpness: 1.5 },
-        Filter::Penumbra { light_size: 0.1 },
-        Filter::PenumbraTurned { light_size: 0.1 },
+        Filter::Tent3 { sharpness: 3.0 },
+        Filter::Tent5 { sharpness: 2.0 },
+        Filter::Tent7 { sharpness: 1.5 },
+        Filter::Pcss { light_size: 0.1 },
+        Filter::PcssRotated { light_size: 0.1 },
     ])
 }
 

@@ -22,7 +22,7 @@ use crate::support::table;
 
 const MAP_SIZE: u32 = 192;
 /// The default.
-const FILTER: Filter = Filter::TentNarrow { sharpness: 3.0 };
+const FILTER: Filter = Filter::Tent3 { sharpness: 3.0 };
 
 /// Runs `test` on as many cases, and fails with the smallest that proptest finds.
 fn run<S: Strategy>(cases: u32, strategy: S, test: impl Fn(S::Value) -> Result<(), TestCaseError>) {

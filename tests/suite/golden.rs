@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 use image::RgbaImage;
 use wgpu_shadows::{
-    Aabb, Bias, CameraView, DebugPicture, DebugView, DirectionalLight, DirectionalShadow,
+    Aabb, Bias, CameraView, DebugImage, DebugView, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, Filter, ShadowBindings, ShadowBindingsDescriptor,
 };
 
@@ -284,7 +284,7 @@ fn a_map_as_a_picture() {
     let mut encoder = gpu.encoder();
     {
         let mut pass = color_pass(&mut encoder, &target);
-        view.draw(&mut pass, shadow.maps(), DebugPicture::Layer(0))
+        view.draw(&mut pass, shadow.maps(), DebugImage::Layer(0))
             .expect("a layer of the map");
     }
     gpu.submit(encoder);

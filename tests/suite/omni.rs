@@ -136,8 +136,8 @@ fn distance_to_border(triangle: &Triangle, place: DVec3) -> f64 {
 fn planar_samplings() -> impl Iterator<Item = (Filter, Bias)> {
     let more = [
         Filter::default(),
-        Filter::Penumbra { light_size: 0.05 },
-        Filter::TentWide { sharpness: 2.0 },
+        Filter::Pcss { light_size: 0.05 },
+        Filter::Tent7 { sharpness: 2.0 },
     ];
     Filter::ALL
         .into_iter()
@@ -188,7 +188,7 @@ fn seams_are_lit() {
             let report = lamp.record(gpu, scene, *light, None, &EVERYWHERE);
             assert!(report.passes >= 3, "{name}: {report:?}");
             // A penumbra looks for occluders up to 33 texels around, and on a sphere finds the other facets.
-            if matches!(filter, Filter::Penumbra { .. }) && name == "sphere" {
+            if matches!(filter, Filter::Pcss { .. }) && name == "sphere" {
                 continue;
             }
             let (dark, darkest) = lamp.false_shadows(gpu, points);
@@ -263,7 +263,7 @@ fn shadows_are_where_rays_have_them() {
     let mut random = Random::new(43);
     for (filter, bias) in [
         (Filter::default(), Bias::Auto),
-        (Filter::TentWide { sharpness: 1.0 }, Bias::Auto),
+        (Filter::Tent7 { sharpness: 1.0 }, Bias::Auto),
         (Filter::Box, Bias::NormalOffset),
         (Filter::Hardware, Bias::Auto),
     ] {

@@ -220,7 +220,7 @@ fn odd_lights_get_visibilities() {
     for filter in [
         Filter::default(),
         Filter::Hardware,
-        Filter::Penumbra { light_size: 0.1 },
+        Filter::Pcss { light_size: 0.1 },
         Filter::DirectionStar { radius: 0.05 },
     ] {
         let descriptor = OmniShadowDescriptor {

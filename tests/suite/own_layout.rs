@@ -15,7 +15,7 @@ use crate::support::random::Random;
 use crate::support::scene::{Mesh, Scene};
 use crate::support::wgsl;
 
-const MODULES: [&str; 4] = ["bias_plane", "filter_tent_narrow", "cube_face", "normal"];
+const MODULES: [&str; 4] = ["bias_plane", "filter_tent3", "cube_face", "normal"];
 
 /// The modules and the engine's own text behind them.
 fn composition() -> String {

@@ -1,4 +1,4 @@
-//! `Filter::Penumbra`: the device against its twin in f64, and both against what a light with size really does.
+//! `Filter::Pcss`: the device against its twin in f64, and both against what a light with size really does.
 //!
 //! The closed form: a half-plane whose edge hides a disk-shaped light lets through the share of the disk that lies beyond a
 //! chord. With t the distance of a receiver from the middle of the penumbra over its half-width R, that is
@@ -36,8 +36,8 @@ fn penumbrae_are_the_twins() {
     let gpu = gpu();
     let scene = scene();
     let sizes = [0.01, 0.2, 0.8];
-    let fixed = sizes.map(|light_size| Filter::Penumbra { light_size });
-    let turned = sizes.map(|light_size| Filter::PenumbraTurned { light_size });
+    let fixed = sizes.map(|light_size| Filter::Pcss { light_size });
+    let turned = sizes.map(|light_size| Filter::PcssRotated { light_size });
     for filter in fixed.into_iter().chain(turned) {
         let bias = Bias::Auto;
         let lit = Lit::new(gpu, &scene, 131, filter, bias);
@@ -251,7 +251,7 @@ fn a_sun_spreads_as_its_diameter_says() {
         (1.0, 0.5, 700),
     ] {
         for turn in [0.0, 0.4, PI / 4.0] {
-            let filter = Filter::Penumbra {
+            let filter = Filter::Pcss {
                 light_size: diameter,
             };
             let (profile, texels) = sun_profile(gpu, height, filter, map_size, turn);
@@ -277,7 +277,7 @@ fn a_spot_spreads_as_its_radius_says() {
     for (height, light_size) in [(1.5, 0.2), (3.0, 0.1), (2.0, 0.15)] {
         let descriptor = SpotShadowDescriptor {
             map_size: 512,
-            filter: Filter::Penumbra { light_size },
+            filter: Filter::Pcss { light_size },
             ..Default::default()
         };
         let mut shadow = SpotShadow::new(&gpu.device, &descriptor).expect("a valid spot");
@@ -316,7 +316,7 @@ fn shadows_are_hard_where_the_caster_touches() {
     let diameter = 0.2_f32;
     let descriptor = DirectionalShadowDescriptor {
         map_size: 1024,
-        filter: Filter::Penumbra {
+        filter: Filter::Pcss {
             light_size: diameter,
         },
         ..Default::default()

@@ -66,7 +66,7 @@ fn receivers_are_the_twins() {
     // Reaches and map sizes differ, and with them windows, borders and gradients.
     let kinds = [
         (Filter::Bilinear { sharpness: 1.0 }, 93),
-        (Filter::TentWide { sharpness: 2.0 }, 1024),
+        (Filter::Tent7 { sharpness: 2.0 }, 1024),
     ];
     for (filter, map_size) in kinds {
         for bias in BIASES {

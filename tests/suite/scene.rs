@@ -165,9 +165,9 @@ fn two_cameras_share_the_maps_of_a_sun() {
     let view = |yard: usize| yards.camera(yard).view().with_max_distance(25.0);
     let cameras = [view(0), view(1)];
     for (stability, cascades) in [
-        (Stability::Rungs, 1),
-        (Stability::Rungs, 3),
-        (Stability::Rotation, 2),
+        (Stability::TightFit, 1),
+        (Stability::TightFit, 3),
+        (Stability::BoundingSphere, 2),
     ] {
         let mut shadow = sun(gpu, stability, cascades);
         let ask = Ask::light(gpu, shadow.maps());
@@ -225,7 +225,7 @@ fn a_mirror_sees_what_its_camera_sees() {
                 receivers: &yards.floors,
             })
             .expect("a valid frame");
-        let mut shadow = sun(gpu, Stability::Rungs, 2);
+        let mut shadow = sun(gpu, Stability::TightFit, 2);
         let mut encoder = gpu.encoder();
         shadow
             .record(&mut encoder, &frame, &DirectionalLight::new(SUN.as_vec3()))
@@ -346,7 +346,7 @@ fn who_casts_and_who_receives() {
                 receivers: &[],
             })
             .expect("a valid frame");
-        let mut shadow = sun(gpu, Stability::Rungs, 1);
+        let mut shadow = sun(gpu, Stability::TightFit, 1);
         let mut encoder = gpu.encoder();
         let light = DirectionalLight::new(SUN.as_vec3());
         let report = shadow.record(&mut encoder, &frame, &light);
@@ -402,7 +402,7 @@ fn coverage_is_one_for_all_lights() {
                 receivers: &yards.floors,
             })
             .expect("a valid frame");
-        let mut shadow = sun(gpu, Stability::Rungs, 1);
+        let mut shadow = sun(gpu, Stability::TightFit, 1);
         let mut cone =
             SpotShadow::new(&gpu.device, &SpotShadowDescriptor::default()).expect("a valid spot");
         let spot = SpotLight {

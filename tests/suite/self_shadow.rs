@@ -27,7 +27,7 @@ const FLOAT: DepthFormat = DepthFormat::Float32;
 
 /// All filters, with the default's sharpness and with a soft light, under the biases that promise this.
 fn samplings() -> Vec<(Filter, Bias)> {
-    let more = [Filter::default(), Filter::Penumbra { light_size: 0.02 }];
+    let more = [Filter::default(), Filter::Pcss { light_size: 0.02 }];
     Filter::ALL
         .into_iter()
         .chain(more)

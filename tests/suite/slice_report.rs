@@ -67,11 +67,11 @@ fn a_picture_from_the_light_is_its_own_footprint() {
     let map = view.texel_size_world * 256.0;
     let wanted = 6.0 * 4.0 / (map.x * map.y);
     assert!(
-        (slice.share_of_map - wanted).abs() < 1e-5,
+        (slice.map_utilization - wanted).abs() < 1e-5,
         "{slice:?} {wanted}"
     );
     let texels = 4.0 / view.texel_size_world;
-    let across = slice.texels_across_picture;
+    let across = slice.texels_across_image;
     assert!(
         (across.x - texels.min_element()).abs() < 1e-3,
         "{across} {texels}"
@@ -104,7 +104,7 @@ fn fitted_maps_waste_less_than_half() {
         let eye = random.point(DVec3::new(-60.0, 1.7, -60.0), DVec3::new(60.0, 1.7, 60.0));
         let way = random.direction().with_y(-0.05);
         let camera = Camera::modern(eye, eye + way, 1.0, 16.0 / 9.0);
-        let both = [Stability::Rungs, Stability::Rotation].map(|stability| {
+        let both = [Stability::TightFit, Stability::BoundingSphere].map(|stability| {
             report(
                 &scene,
                 &camera,
@@ -119,8 +119,8 @@ fn fitted_maps_waste_less_than_half() {
         });
         for (fitted, sphere) in both[0].views.iter().zip(&both[1].views) {
             if let (Some(fitted), Some(sphere)) = (fitted.slice, sphere.slice) {
-                shares[0] += fitted.share_of_map;
-                shares[1] += sphere.share_of_map;
+                shares[0] += fitted.map_utilization;
+                shares[1] += sphere.map_utilization;
                 count += 1;
             }
         }

@@ -135,7 +135,7 @@ fn assert_planes_lit(cones_degrees: &[f64]) -> usize {
     let (mut failures, mut asked) = (Vec::new(), 0);
     for (filter, bias) in [
         (Filter::default(), Bias::Auto),
-        (Filter::TentWide { sharpness: 1.0 }, Bias::Auto),
+        (Filter::Tent7 { sharpness: 1.0 }, Bias::Auto),
         (Filter::Bilinear { sharpness: 1.0 }, Bias::NormalOffset),
         (Filter::Box, Bias::NormalOffset),
         (Filter::Hardware, Bias::Auto),
@@ -212,7 +212,7 @@ fn planes_would_shadow_themselves() {
 #[test]
 fn the_cone_ends_at_its_rim() {
     let gpu = gpu();
-    for filter in [Filter::default(), Filter::TentWide { sharpness: 1.0 }] {
+    for filter in [Filter::default(), Filter::Tent7 { sharpness: 1.0 }] {
         let mut spot = Spot::new(gpu, 128, filter, Bias::Auto);
         // The rim of 179.9 degrees lies within 1/1024 of the reach of the light's own plane, where nothing casts.
         for cone in CONES_DEGREES.into_iter().filter(|cone| *cone < 179.5) {
@@ -288,7 +288,7 @@ fn shadows_are_where_rays_have_them() {
     let mut random = Random::new(67);
     for (filter, bias) in [
         (Filter::default(), Bias::Auto),
-        (Filter::TentWide { sharpness: 1.0 }, Bias::Auto),
+        (Filter::Tent7 { sharpness: 1.0 }, Bias::Auto),
         (Filter::Hardware, Bias::Auto),
     ] {
         let mut spot = Spot::new(gpu, MAP, filter, bias);

@@ -133,7 +133,7 @@ fn no_motion_changes_a_spheres_texels() {
     let mut shadow = sun(&DirectionalShadowDescriptor {
         map_size: 256,
         cascades: 3,
-        stability: Stability::Rotation,
+        stability: Stability::BoundingSphere,
         ..Default::default()
     });
     let mut random = Random::new(8);
@@ -174,7 +174,7 @@ fn a_sphere_around_an_endless_view_is_refused() {
     let list = scene.list();
     let mut shadow = sun(&DirectionalShadowDescriptor {
         map_size: 64,
-        stability: Stability::Rotation,
+        stability: Stability::BoundingSphere,
         ..Default::default()
     });
     let mut encoder = gpu().encoder();

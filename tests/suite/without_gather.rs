@@ -2,7 +2,7 @@
 //! for it. There the library draws what it draws elsewhere.
 
 use image::RgbaImage;
-use wgpu_shadows::{Bias, DebugPicture, DebugView, Filter, shader};
+use wgpu_shadows::{Bias, DebugImage, DebugView, Filter, shader};
 
 use crate::support::child;
 use crate::support::floor::{SIZE, picture};
@@ -55,10 +55,10 @@ fn filters(kind: Kind) -> Vec<Filter> {
         Filter::Nearest,
         Filter::Box,
         Filter::Bilinear { sharpness: 1.0 },
-        Filter::TentMedium { sharpness: 1.0 },
-        Filter::TentWide { sharpness: 1.0 },
-        Filter::Penumbra { light_size: 0.1 },
-        Filter::PenumbraTurned { light_size: 0.1 },
+        Filter::Tent5 { sharpness: 1.0 },
+        Filter::Tent7 { sharpness: 1.0 },
+        Filter::Pcss { light_size: 0.1 },
+        Filter::PcssRotated { light_size: 0.1 },
     ];
     if kind.has_cube() {
         filters.push(Filter::DirectionStar { radius: 0.05 });
@@ -154,10 +154,7 @@ fn draw_debug_views() -> usize {
     };
     let gpus = [vulkan(), &gpu];
     let [_, cascades, _, _, lamp, ..] = Kind::ALL;
-    let pictures = [
-        (cascades, DebugPicture::Layer(1)),
-        (lamp, DebugPicture::Cross),
-    ];
+    let pictures = [(cascades, DebugImage::Layer(1)), (lamp, DebugImage::Cross)];
     for (kind, what) in pictures {
         let drawn = gpus.map(|gpu| {
             let light = kind.lit(gpu, &stage(gpu), Filter::default(), Bias::Auto);
@@ -173,7 +170,7 @@ fn draw_debug_views() -> usize {
     3
 }
 
-fn debug_picture(gpu: &Gpu, light: &dyn Light, what: DebugPicture) -> RgbaImage {
+fn debug_picture(gpu: &Gpu, light: &dyn Light, what: DebugImage) -> RgbaImage {
     let view = DebugView::new(&gpu.device, COLOR).expect("a renderable format");
     let target = color_target(gpu, SIZE);
     let mut encoder = gpu.encoder();

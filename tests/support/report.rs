@@ -9,18 +9,18 @@ pub fn assert_whole(report: &ShadowReport, what: &str) {
             view.texel_size_world.x,
             view.texel_size_world.y,
             view.depth_range_world,
-            view.worst_gap_world,
+            view.max_peter_panning_world,
         ];
         if let Some(slice) = view.slice {
             assert!(
-                (0.0..=1.0).contains(&slice.share_of_map),
+                (0.0..=1.0).contains(&slice.map_utilization),
                 "{what}: {view:?}"
             );
             numbers.extend([
                 slice.depth_near,
                 slice.depth_far,
-                slice.texels_across_picture.x,
-                slice.texels_across_picture.y,
+                slice.texels_across_image.x,
+                slice.texels_across_image.y,
             ]);
         }
         assert!(

@@ -37,7 +37,7 @@ fn receivers_beyond_every_cascade_are_lit() {
     for cascades in [1, 3, 8] {
         for filter in [
             Filter::default(),
-            Filter::TentWide { sharpness: 1.0 },
+            Filter::Tent7 { sharpness: 1.0 },
             Filter::Nearest,
         ] {
             let mut sun = Sun::new(&DirectionalShadowDescriptor {
@@ -132,7 +132,7 @@ fn no_light_of_a_pool_reads_its_neighbours() {
     let descriptor = PoolDescriptor {
         map_size: 64,
         capacity: 3,
-        filter: Filter::TentWide { sharpness: 1.0 },
+        filter: Filter::Tent7 { sharpness: 1.0 },
         ..Default::default()
     };
     let mut spots = SpotShadowPool::new(&gpu.device, &descriptor).expect("a pool");

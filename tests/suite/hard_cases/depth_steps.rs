@@ -102,7 +102,7 @@ fn long_depth_ranges_keep_their_shadows() {
             );
             let view = &report.views[0];
             assert!(f64::from(view.depth_range_world) >= range);
-            let gap = f64::from(view.worst_gap_world);
+            let gap = f64::from(view.max_peter_panning_world);
             let lowest = boxes()
                 .iter()
                 .map(|(_, high)| high.y * unit)

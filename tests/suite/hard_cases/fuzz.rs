@@ -55,7 +55,7 @@ fn any_descriptor_is_taken_or_refused() {
                 filter,
                 bias,
                 blend: lambda,
-                stability: Stability::Rungs,
+                stability: Stability::TightFit,
                 depth_format: DepthFormat::Unorm16,
             };
             counts.count(&DirectionalShadow::new(device, &sun));
@@ -129,7 +129,7 @@ impl Lights {
                     ends: [2.0, 10.0, 0.0, 0.0, 0.0, 0.0, 0.0],
                 },
                 blend: 0.2,
-                stability: Stability::Rotation,
+                stability: Stability::BoundingSphere,
                 ..Default::default()
             },
         );

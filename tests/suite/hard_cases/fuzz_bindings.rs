@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use wgpu_shadows::{
-    DebugPicture, DebugView, OmniShadow, OmniShadowDescriptor, OmniShadowPool, PoolDescriptor,
+    DebugImage, DebugView, OmniShadow, OmniShadowDescriptor, OmniShadowPool, PoolDescriptor,
     ShadowBindings, ShadowBindingsDescriptor, SpotShadowPool, shader,
 };
 
@@ -155,9 +155,9 @@ fn any_debug_picture_is_drawn_or_refused() {
         |(format, light, kind, layer, matrix)| {
             counts.count(&DebugView::new(&gpu.device, format));
             let picture = match kind {
-                0 => DebugPicture::Layer(layer),
-                1 => DebugPicture::Cross,
-                _ => DebugPicture::PoolCross(layer),
+                0 => DebugImage::Layer(layer),
+                1 => DebugImage::Cross,
+                _ => DebugImage::PoolCross(layer),
             };
             let mut encoder = gpu.encoder();
             {

@@ -51,7 +51,7 @@ fn nothing_leaks_through_a_stack() {
                         &scene.list(),
                         &[],
                     );
-                    let worst = f64::from(report.views[0].worst_gap_world);
+                    let worst = f64::from(report.views[0].max_peter_panning_world);
                     let mut heights = vec![0.0_f64];
                     if gap > worst {
                         heights.push(shelf);

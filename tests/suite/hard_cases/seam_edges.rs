@@ -89,7 +89,7 @@ fn edges_at_seams_are_as_true_as_elsewhere() {
     for filter in [
         Filter::default(),
         Filter::Bilinear { sharpness: 1.0 },
-        Filter::TentWide { sharpness: 1.0 },
+        Filter::Tent7 { sharpness: 1.0 },
     ] {
         let descriptor = OmniShadowDescriptor {
             map_size: MAP_SIZE,

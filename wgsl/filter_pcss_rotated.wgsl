@@ -1,8 +1,8 @@
-// `filter_penumbra` with its patterns turned by an angle of each half texel's own: grain in place of bands where a penumbra is
+// `filter_pcss` with its patterns turned by an angle of each half texel's own: grain in place of bands where a penumbra is
 // so wide that its taps lie far apart. The grain stands still in the world, since a texel's place in the world's grid makes the
-// angle. Rust twin: src/receive/reference.rs. Requires: view, texels, filter_penumbra.
+// angle. Rust twin: src/receive/reference.rs. Requires: view, texels, filter_pcss.
 
-fn shadow_filter_penumbra_turned(
+fn shadow_filter_pcss_rotated(
     map: ShadowMap,
     map_sampler: sampler,
     receiver: ShadowReceiver,

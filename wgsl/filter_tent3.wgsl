@@ -2,7 +2,7 @@
 // Kernel: Castaño 2013, "Shadow Mapping Summary", here over raw depths so that every texel has its own reference.
 // Rust twin: src/receive/reference.rs. Requires: view, texels, gather.
 
-fn shadow_filter_tent_narrow(
+fn shadow_filter_tent3(
     map: ShadowMap,
     map_sampler: sampler,
     receiver: ShadowReceiver,

@@ -2,7 +2,7 @@
 // Kernel: Castaño 2013, "Shadow Mapping Summary", here over raw depths so that every texel has its own reference.
 // Rust twin: src/receive/reference.rs. Requires: view, texels, gather.
 
-fn shadow_filter_tent_medium(
+fn shadow_filter_tent5(
     map: ShadowMap,
     map_sampler: sampler,
     receiver: ShadowReceiver,
@@ -11,17 +11,17 @@ fn shadow_filter_tent_medium(
     let base = floor(from_centers);
     let s = from_centers - base;
     let first = base - 2.0;
-    let across = shadow_tent_medium_weights(s.x);
-    let down = shadow_tent_medium_weights(s.y);
+    let across = shadow_tent5_weights(s.x);
+    let down = shadow_tent5_weights(s.y);
     // Written out: a loop would be bounded and not be unrolled.
-    let lit = shadow_tent_medium_rows(map, map_sampler, receiver, first, across, down[0])
-        + shadow_tent_medium_rows(map, map_sampler, receiver, first + vec2<f32>(0.0, 2.0), across, down[1])
-        + shadow_tent_medium_rows(map, map_sampler, receiver, first + vec2<f32>(0.0, 4.0), across, down[2]);
+    let lit = shadow_tent5_rows(map, map_sampler, receiver, first, across, down[0])
+        + shadow_tent5_rows(map, map_sampler, receiver, first + vec2<f32>(0.0, 2.0), across, down[1])
+        + shadow_tent5_rows(map, map_sampler, receiver, first + vec2<f32>(0.0, 4.0), across, down[2]);
     return shadow_sharpen(lit / 144.0, receiver.sharpness);
 }
 
 // Weights of three pairs of texels along an axis, times twelve.
-fn shadow_tent_medium_weights(s: f32) -> mat3x2<f32> {
+fn shadow_tent5_weights(s: f32) -> mat3x2<f32> {
     return mat3x2<f32>(
         vec2<f32>(1.0 - s, 3.0 - 2.0 * s),
         vec2<f32>(4.0 - s, 3.0 + s),
@@ -30,7 +30,7 @@ fn shadow_tent_medium_weights(s: f32) -> mat3x2<f32> {
 }
 
 // Two rows of six texels.
-fn shadow_tent_medium_rows(
+fn shadow_tent5_rows(
     map: ShadowMap,
     map_sampler: sampler,
     receiver: ShadowReceiver,

@@ -1,4 +1,4 @@
-//! `Filter::PenumbraTurned`: as wide and as true as the fixed pattern, with a grain that stands still in the world.
+//! `Filter::PcssRotated`: as wide and as true as the fixed pattern, with a grain that stands still in the world.
 
 use glam::{DVec3, Vec2};
 use wgpu_shadows::{
@@ -16,7 +16,7 @@ use crate::support::scene::{Mesh, Scene};
 #[test]
 fn turned_penumbrae_are_as_wide_as_the_light_makes_them() {
     for (height, diameter, map_size) in [(1.0, 0.2, 512), (3.0, 0.2, 512), (1.0, 0.5, 700)] {
-        let filter = Filter::PenumbraTurned {
+        let filter = Filter::PcssRotated {
             light_size: diameter,
         };
         let (profile, texels) = sun_profile(gpu(), height, filter, map_size, 0.4);
@@ -29,7 +29,7 @@ fn turned_penumbrae_are_as_wide_as_the_light_makes_them() {
 #[test]
 fn the_grain_is_fixed_in_the_world() {
     let gpu = gpu();
-    let filter = Filter::PenumbraTurned { light_size: 0.05 };
+    let filter = Filter::PcssRotated { light_size: 0.05 };
     let mut shadow = DirectionalShadow::new(
         &gpu.device,
         &DirectionalShadowDescriptor {

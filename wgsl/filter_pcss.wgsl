@@ -7,7 +7,7 @@
 // of the occluders that can hide a part of the light is found, then visibility is the mean over the disk that they spread.
 // Exact for one planar occluder parallel to the map; elsewhere in error by the averaging of occluders.
 // Every texel is compared with the receiver's own plane, as in `gather`. Rust twin: src/receive/reference.rs.
-// Requires: view, texels, gather, filter_tent_narrow.
+// Requires: view, texels, gather, filter_tent3.
 
 // Widest disk in texels; maps keep this much free around what they cover.
 const SHADOW_PENUMBRA_REACH: f32 = 32.0;
@@ -54,7 +54,7 @@ fn shadow_occluders(
     return vec2<f32>(dot(counts, height), dot(counts, vec4<f32>(1.0)));
 }
 
-fn shadow_filter_penumbra(
+fn shadow_filter_pcss(
     map: ShadowMap,
     map_sampler: sampler,
     receiver: ShadowReceiver,
@@ -81,7 +81,7 @@ fn shadow_penumbra(
         return 1.0;
     }
     let radius = min(receiver.penumbra * (found.x / found.y), reach);
-    let hard = shadow_filter_tent_narrow(map, map_sampler, receiver);
+    let hard = shadow_filter_tent3(map, map_sampler, receiver);
     if max(radius.x, radius.y) < 1.0 {
         return hard;
     }

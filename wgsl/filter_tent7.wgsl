@@ -2,7 +2,7 @@
 // Kernel: Castaño 2013, "Shadow Mapping Summary", here over raw depths so that every texel has its own reference.
 // Rust twin: src/receive/reference.rs. Requires: view, texels, gather.
 
-fn shadow_filter_tent_wide(
+fn shadow_filter_tent7(
     map: ShadowMap,
     map_sampler: sampler,
     receiver: ShadowReceiver,
@@ -11,18 +11,18 @@ fn shadow_filter_tent_wide(
     let base = floor(from_centers);
     let s = from_centers - base;
     let first = base - 3.0;
-    let across = shadow_tent_wide_weights(s.x);
-    let down = shadow_tent_wide_weights(s.y);
+    let across = shadow_tent7_weights(s.x);
+    let down = shadow_tent7_weights(s.y);
     // Written out: a loop would be bounded and not be unrolled.
-    let lit = shadow_tent_wide_rows(map, map_sampler, receiver, first, across, down[0])
-        + shadow_tent_wide_rows(map, map_sampler, receiver, first + vec2<f32>(0.0, 2.0), across, down[1])
-        + shadow_tent_wide_rows(map, map_sampler, receiver, first + vec2<f32>(0.0, 4.0), across, down[2])
-        + shadow_tent_wide_rows(map, map_sampler, receiver, first + vec2<f32>(0.0, 6.0), across, down[3]);
+    let lit = shadow_tent7_rows(map, map_sampler, receiver, first, across, down[0])
+        + shadow_tent7_rows(map, map_sampler, receiver, first + vec2<f32>(0.0, 2.0), across, down[1])
+        + shadow_tent7_rows(map, map_sampler, receiver, first + vec2<f32>(0.0, 4.0), across, down[2])
+        + shadow_tent7_rows(map, map_sampler, receiver, first + vec2<f32>(0.0, 6.0), across, down[3]);
     return shadow_sharpen(lit / 2704.0, receiver.sharpness);
 }
 
 // Weights of four pairs of texels along an axis, times fifty-two.
-fn shadow_tent_wide_weights(s: f32) -> mat4x2<f32> {
+fn shadow_tent7_weights(s: f32) -> mat4x2<f32> {
     return mat4x2<f32>(
         vec2<f32>(1.0 - s, 5.0 - 4.0 * s),
         vec2<f32>(12.0 - 7.0 * s, 16.0 - 4.0 * s),
@@ -32,7 +32,7 @@ fn shadow_tent_wide_weights(s: f32) -> mat4x2<f32> {
 }
 
 // Two rows of eight texels.
-fn shadow_tent_wide_rows(
+fn shadow_tent7_rows(
     map: ShadowMap,
     map_sampler: sampler,
     receiver: ShadowReceiver,

@@ -1,4 +1,4 @@
-//! The twin of `Filter::Penumbra` and `Filter::PenumbraTurned` against the closed form.
+//! The twin of `Filter::Pcss` and `Filter::PcssRotated` against the closed form.
 
 use glam::DVec2;
 use wgpu_shadows::Filter;
@@ -21,8 +21,8 @@ fn the_twin_spreads_as_the_closed_form() {
     let radius = 20.0;
     let light_size = 1.0;
     for filter in [
-        Filter::Penumbra { light_size },
-        Filter::PenumbraTurned { light_size },
+        Filter::Pcss { light_size },
+        Filter::PcssRotated { light_size },
     ] {
         let mut square = 0.0;
         for step in 0..STEPS {
