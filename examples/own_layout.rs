@@ -14,9 +14,10 @@ use std::process::ExitCode;
 use clap::Parser;
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    CasterPipeline, CasterPipelineDescriptor, CasterVertex, Coverage, DirectionalLight,
-    DirectionalShadow, MeshCaster, MeshCasterDescriptor, MeshIndices, ModelTransform, OmniLight,
-    OmniShadow, PositionAttribute, ShadowCaster, ShadowFrameDescriptor, ShadowScene, shader,
+    CasterPipeline, Coverage, DirectionalLight, DirectionalShadow, MeshCaster, OmniLight,
+    OmniShadow, ShadowCaster, ShadowFrameDescriptor, ShadowScene, caster::CasterPipelineDescriptor,
+    caster::CasterVertex, caster::MeshCasterDescriptor, caster::MeshIndices,
+    caster::ModelTransform, caster::PositionAttribute, shader,
 };
 
 use common::camera::Camera;
@@ -206,7 +207,7 @@ fn objects(device: &wgpu::Device) -> Vec<Object> {
 fn casters(
     device: &wgpu::Device,
     objects: &[Object],
-) -> Result<Vec<MeshCaster>, wgpu_shadows::CasterError> {
+) -> Result<Vec<MeshCaster>, wgpu_shadows::error::CasterError> {
     let pipeline = CasterPipeline::new(
         device,
         &CasterPipelineDescriptor {

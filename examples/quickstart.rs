@@ -9,9 +9,10 @@ use glam::camera::rh::{proj::directx::perspective_infinite_reverse, view::look_a
 use glam::{DVec3, Mat4, Vec3};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu_shadows::{
-    Aabb, CameraView, CasterPipeline, CasterPipelineDescriptor, Coverage, DirectionalLight,
-    DirectionalShadow, DirectionalShadowDescriptor, MeshCaster, MeshCasterDescriptor, MeshIndices,
-    ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowFrameDescriptor, ShadowScene,
+    Aabb, CameraView, CasterPipeline, Coverage, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, MeshCaster, ShadowBindings, ShadowBindingsDescriptor,
+    ShadowCaster, ShadowFrameDescriptor, ShadowScene, caster::CasterPipelineDescriptor,
+    caster::MeshCasterDescriptor, caster::MeshIndices,
 };
 
 /// The engine's own shader. The library's WGSL goes in front of it and brings the two functions that begin with `shadow_`.

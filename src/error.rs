@@ -26,6 +26,16 @@ pub enum DeviceRefusal {
     Refused(String),
 }
 
+/// An object that a device did not make. Every error of the crate that a device can cause carries one.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("the device did not make {object}: {refusal}")]
+pub struct DeviceError {
+    /// What was being created.
+    pub object: &'static str,
+    /// Why the device did not make it.
+    pub refusal: DeviceRefusal,
+}
+
 /// What a shadow light refuses at construction or at its per-frame call.
 ///
 /// Whatever the call, an error means that nothing was recorded and that the object keeps its last good state.
@@ -156,14 +166,9 @@ pub enum ShadowError {
         /// Bytes asked for.
         bytes: u64,
     },
-    /// The device is lost, out of memory, or refused an object.
-    #[error("the device did not make {object}: {refusal}")]
-    Device {
-        /// What was being created.
-        object: &'static str,
-        /// Why the device did not make it.
-        refusal: DeviceRefusal,
-    },
+    /// The device did not make an object: it is lost, out of memory, or refused it.
+    #[error(transparent)]
+    Device(#[from] DeviceError),
 }
 
 /// What [`CasterPipeline::new`](crate::CasterPipeline::new) and [`MeshCaster::new`](crate::MeshCaster::new) refuse.
@@ -243,14 +248,9 @@ pub enum CasterError {
         /// What else the pipeline takes.
         needs: String,
     },
-    /// The device is lost, out of memory, or refused an object: a pipeline most often for the engine's own WGSL.
-    #[error("the device did not make {object}: {refusal}")]
-    Device {
-        /// What was being created.
-        object: &'static str,
-        /// Why the device did not make it.
-        refusal: DeviceRefusal,
-    },
+    /// The device did not make an object: it is lost, out of memory, or refused it.
+    #[error(transparent)]
+    Device(#[from] DeviceError),
     /// A number that must be finite was NaN or infinite.
     #[error("{field} must be finite, got {value}")]
     NotFinite {
@@ -345,14 +345,9 @@ pub enum BindingsError {
         /// The light's name.
         name: String,
     },
-    /// The device is lost, out of memory, or refused an object.
-    #[error("the device did not make {object}: {refusal}")]
-    Device {
-        /// What was being created.
-        object: &'static str,
-        /// Why the device did not make it.
-        refusal: DeviceRefusal,
-    },
+    /// The device did not make an object: it is lost, out of memory, or refused it.
+    #[error(transparent)]
+    Device(#[from] DeviceError),
     /// A module name that is not in the table.
     #[error("there is no shader module named {name:?}")]
     UnknownModule {
@@ -361,7 +356,7 @@ pub enum BindingsError {
     },
 }
 
-/// What [`DebugView`](crate::DebugView) refuses.
+/// What [`DebugView`](crate::debug::DebugView) refuses.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum DebugViewError {
@@ -400,12 +395,7 @@ pub enum DebugViewError {
     /// Maps that are on another device than the view.
     #[error("DebugView: the maps must be on the device that the view was made on")]
     OtherDevice,
-    /// The device is lost, out of memory, or refused an object.
-    #[error("the device did not make {object}: {refusal}")]
-    Device {
-        /// What was being created.
-        object: &'static str,
-        /// Why the device did not make it.
-        refusal: DeviceRefusal,
-    },
+    /// The device did not make an object: it is lost, out of memory, or refused it.
+    #[error(transparent)]
+    Device(#[from] DeviceError),
 }

@@ -73,8 +73,8 @@
 mod aabb;
 mod cast;
 mod check;
-mod debug;
-mod error;
+pub mod debug;
+pub mod error;
 mod fit;
 mod gpu;
 mod light;
@@ -82,25 +82,39 @@ mod receive;
 pub mod shader;
 
 pub use aabb::Aabb;
-pub use cast::{
-    CasterPipeline, CasterPipelineDescriptor, CasterVertex, MeshCaster, MeshCasterDescriptor,
-    MeshIndices, ModelTransform, PositionAttribute, Revision, ShadowCaster, is_closed_solid,
-};
-pub use debug::{DebugImage, DebugView};
-pub use error::{BindingsError, CasterError, DebugViewError, DeviceRefusal, ShadowError};
-pub use fit::{CameraView, CascadeSplit, ShadowView, SliceReport, Stability};
+pub use cast::{CasterPipeline, MeshCaster, Revision, ShadowCaster};
+pub use error::ShadowError;
+pub use fit::{CameraView, CascadeSplit, ShadowView, Stability};
 pub use gpu::DepthFormat;
 pub use light::{
     Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniLight,
-    OmniShadow, OmniShadowDescriptor, OmniShadowPool, PoolDescriptor, PoolLight, ShadowFrame,
-    ShadowFrameDescriptor, ShadowScene, ShadowSlot, SpotLight, SpotShadow, SpotShadowDescriptor,
-    SpotShadowPool,
+    OmniShadow, OmniShadowDescriptor, ShadowFrame, ShadowFrameDescriptor, ShadowScene, SpotLight,
+    SpotShadow, SpotShadowDescriptor,
 };
 pub use receive::{
-    Bias, Filter, ShadowBindings, ShadowBindingsDescriptor, ShadowMaps, ShadowReport,
-    ShadowViewUniform, ViewReport, ViewStatus, reference,
+    Bias, Filter, ShadowBindings, ShadowBindingsDescriptor, ShadowMaps, ShadowViewUniform,
+    reference,
 };
 pub use {glam, wgpu};
+
+/// What casters are made of: how their vertices are laid out and shaded, and the ready-made mesh.
+pub mod caster {
+    pub use crate::cast::{
+        CasterPipelineDescriptor, CasterVertex, MeshCasterDescriptor, MeshIndices, ModelTransform,
+        PositionAttribute, is_closed_solid,
+    };
+}
+
+/// Pools of spot and point lights: many lights in one texture array, looked up by index.
+pub mod pool {
+    pub use crate::light::{OmniShadowPool, PoolDescriptor, PoolLight, ShadowSlot, SpotShadowPool};
+}
+
+/// What lights did in a frame, and how fine their maps are.
+pub mod report {
+    pub use crate::fit::SliceReport;
+    pub use crate::receive::{ShadowReport, ViewReport, ViewStatus};
+}
 
 #[cfg(doc)]
 #[doc = include_str!("../doc/hard_cases.md")]

@@ -1,6 +1,6 @@
 //! What the maps of a frame took.
 
-use wgpu_shadows::ShadowReport;
+use wgpu_shadows::report::ShadowReport;
 
 /// Sums over the lights of a frame.
 #[derive(Clone, Copy, Debug, Default)]

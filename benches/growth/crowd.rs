@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 use wgpu_shadows::{
-    Aabb, CasterPipeline, CasterPipelineDescriptor, CasterVertex, ModelTransform,
-    PositionAttribute, Revision, ShadowCaster, ShadowView,
+    Aabb, CasterPipeline, Revision, ShadowCaster, ShadowView, caster::CasterPipelineDescriptor,
+    caster::CasterVertex, caster::ModelTransform, caster::PositionAttribute,
 };
 
 use crate::support::gpu::Gpu;

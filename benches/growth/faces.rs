@@ -4,9 +4,10 @@ use std::time::Instant;
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, CasterPipeline, CasterPipelineDescriptor, Coverage, MeshCaster, MeshCasterDescriptor,
-    MeshIndices, OmniLight, OmniShadow, OmniShadowDescriptor, Revision, ShadowCaster,
-    ShadowFrameDescriptor, ShadowReport, ShadowScene, ShadowView,
+    Aabb, CasterPipeline, Coverage, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor,
+    Revision, ShadowCaster, ShadowFrameDescriptor, ShadowScene, ShadowView,
+    caster::CasterPipelineDescriptor, caster::MeshCasterDescriptor, caster::MeshIndices,
+    report::ShadowReport,
 };
 
 use super::stage::Stage;

@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
     CameraView, Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter,
-    ShadowCaster, ShadowFrameDescriptor, ShadowReport, ShadowScene,
+    ShadowCaster, ShadowFrameDescriptor, ShadowScene, report::ShadowReport,
 };
 
 use super::clock::Clock;

@@ -3,11 +3,12 @@
 use std::error::Error;
 
 use wgpu_shadows::{
-    Bias, CasterPipeline, CasterPipelineDescriptor, CasterVertex, Coverage, DirectionalLight,
-    DirectionalShadow, DirectionalShadowDescriptor, Filter, MeshCaster, MeshCasterDescriptor,
-    MeshIndices, ModelTransform, OmniLight, OmniShadow, OmniShadowDescriptor, PositionAttribute,
+    Bias, CasterPipeline, Coverage, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, Filter, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor,
     ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowError, ShadowFrameDescriptor,
-    ShadowReport, ShadowScene, SpotLight, SpotShadow, SpotShadowDescriptor, ViewStatus,
+    ShadowScene, SpotLight, SpotShadow, SpotShadowDescriptor, caster::CasterPipelineDescriptor,
+    caster::CasterVertex, caster::MeshCasterDescriptor, caster::MeshIndices,
+    caster::ModelTransform, caster::PositionAttribute, report::ShadowReport, report::ViewStatus,
 };
 
 use super::gpu::Gpu;

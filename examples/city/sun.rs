@@ -5,9 +5,9 @@ use std::time::{Duration, Instant};
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
-    Coverage, DebugImage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowFrameDescriptor, ShadowReport,
-    ShadowScene,
+    Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, ShadowBindings,
+    ShadowBindingsDescriptor, ShadowCaster, ShadowFrameDescriptor, ShadowScene, debug::DebugImage,
+    report::ShadowReport,
 };
 
 use crate::common::camera::Camera;

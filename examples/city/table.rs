@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::time::Duration;
 
-use wgpu_shadows::{ShadowReport, ViewStatus};
+use wgpu_shadows::{report::ShadowReport, report::ViewStatus};
 
 /// Times of the frames so far.
 #[derive(Default)]

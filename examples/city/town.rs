@@ -2,8 +2,8 @@
 
 use glam::{Vec2, Vec3};
 use wgpu_shadows::{
-    Aabb, CasterError, CasterPipeline, CasterPipelineDescriptor, CasterVertex, ModelTransform,
-    PositionAttribute,
+    Aabb, CasterPipeline, caster::CasterPipelineDescriptor, caster::CasterVertex,
+    caster::ModelTransform, caster::PositionAttribute, error::CasterError,
 };
 
 use crate::building::Building;

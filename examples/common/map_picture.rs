@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use wgpu_shadows::{DebugImage, DebugView, ShadowMaps};
+use wgpu_shadows::{ShadowMaps, debug::DebugImage, debug::DebugView};
 
 use super::gpu::Gpu;
 

@@ -2,8 +2,9 @@
 
 use glam::Vec3;
 use wgpu_shadows::{
-    Aabb, CasterPipeline, CasterPipelineDescriptor, CasterVertex, ModelTransform,
-    PositionAttribute, Revision, ShadowCaster, ShadowView, is_closed_solid,
+    Aabb, CasterPipeline, Revision, ShadowCaster, ShadowView, caster::CasterPipelineDescriptor,
+    caster::CasterVertex, caster::ModelTransform, caster::PositionAttribute,
+    caster::is_closed_solid,
 };
 
 use crate::device::Gpu;

@@ -4,9 +4,9 @@ use std::fmt::Write;
 
 use wgpu_shadows::{
     Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniLight,
-    OmniShadowPool, PoolDescriptor, PoolLight, ShadowBindings, ShadowBindingsDescriptor,
-    ShadowCaster, ShadowFrameDescriptor, ShadowMaps, ShadowReport, ShadowScene, ShadowSlot,
-    SpotLight, SpotShadowPool,
+    ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowFrameDescriptor, ShadowMaps,
+    ShadowScene, SpotLight, pool::OmniShadowPool, pool::PoolDescriptor, pool::PoolLight,
+    pool::ShadowSlot, pool::SpotShadowPool, report::ShadowReport,
 };
 
 use crate::device::Gpu;

@@ -1,7 +1,7 @@
 //! The report of a run, as JSON.
 
 use serde_json::{Value, json};
-use wgpu_shadows::ShadowReport;
+use wgpu_shadows::report::ShadowReport;
 
 use crate::device::Gpu;
 use crate::lights::SceneLights;

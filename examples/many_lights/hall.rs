@@ -2,8 +2,9 @@
 
 use glam::{Mat4, Quat, Vec3};
 use wgpu_shadows::{
-    CasterError, CasterPipeline, CasterPipelineDescriptor, CasterVertex, MeshCaster,
-    MeshCasterDescriptor, MeshIndices, ModelTransform, PositionAttribute, ShadowCaster,
+    CasterPipeline, MeshCaster, ShadowCaster, caster::CasterPipelineDescriptor,
+    caster::CasterVertex, caster::MeshCasterDescriptor, caster::MeshIndices,
+    caster::ModelTransform, caster::PositionAttribute, error::CasterError,
 };
 
 use crate::common::camera::Camera;

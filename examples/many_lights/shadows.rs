@@ -4,9 +4,10 @@ use std::error::Error;
 
 use glam::DVec3;
 use wgpu_shadows::{
-    Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniShadowPool,
-    PoolDescriptor, PoolLight, ShadowBindings, ShadowBindingsDescriptor, ShadowCaster,
-    ShadowFrameDescriptor, ShadowReport, ShadowScene, ShadowSlot, SpotShadowPool,
+    Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, ShadowBindings,
+    ShadowBindingsDescriptor, ShadowCaster, ShadowFrameDescriptor, ShadowScene,
+    pool::OmniShadowPool, pool::PoolDescriptor, pool::PoolLight, pool::ShadowSlot,
+    pool::SpotShadowPool, report::ShadowReport,
 };
 
 use crate::common::camera::Camera;

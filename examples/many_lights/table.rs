@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use wgpu_shadows::{ShadowReport, ViewReport, ViewStatus};
+use wgpu_shadows::{report::ShadowReport, report::ViewReport, report::ViewStatus};
 
 use crate::shadows::Shadows;
 

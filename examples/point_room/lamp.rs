@@ -4,9 +4,9 @@ use std::error::Error;
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
-    Coverage, DebugImage, Filter, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowBindings,
-    ShadowBindingsDescriptor, ShadowCaster, ShadowError, ShadowFrameDescriptor, ShadowReport,
-    ShadowScene,
+    Coverage, Filter, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowBindings,
+    ShadowBindingsDescriptor, ShadowCaster, ShadowError, ShadowFrameDescriptor, ShadowScene,
+    debug::DebugImage, report::ShadowReport,
 };
 
 use crate::SIZE;

@@ -1,6 +1,6 @@
 //! What a frame cost, in one line.
 
-use wgpu_shadows::{ShadowReport, ViewStatus};
+use wgpu_shadows::{report::ShadowReport, report::ViewStatus};
 
 /// Names of the faces in the order of layers.
 const FACES: [&str; 6] = ["+x", "-x", "+y", "-y", "+z", "-z"];

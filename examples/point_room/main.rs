@@ -25,7 +25,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use glam::Vec3;
-use wgpu_shadows::{DebugImage, Filter, ShadowCaster};
+use wgpu_shadows::{Filter, ShadowCaster, debug::DebugImage};
 
 use common::gpu::Gpu;
 use common::{arguments, picture};

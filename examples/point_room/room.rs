@@ -4,8 +4,9 @@ use std::f32::consts::PI;
 
 use glam::{Mat4, Quat, Vec3};
 use wgpu_shadows::{
-    Aabb, CasterError, CasterPipeline, CasterPipelineDescriptor, CasterVertex, MeshCaster,
-    MeshCasterDescriptor, MeshIndices, ModelTransform, PositionAttribute, ShadowCaster,
+    Aabb, CasterPipeline, MeshCaster, ShadowCaster, caster::CasterPipelineDescriptor,
+    caster::CasterVertex, caster::MeshCasterDescriptor, caster::MeshIndices,
+    caster::ModelTransform, caster::PositionAttribute, error::CasterError,
 };
 
 use crate::common::camera::Camera;

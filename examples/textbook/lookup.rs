@@ -1,7 +1,7 @@
 //! How the scene's shader asks for visibility: `shadow_sun(position, normal)`, its bind group, and who wrote it.
 
 use wgpu_shadows::{
-    BindingsError, DirectionalShadow, ShadowBindings, ShadowBindingsDescriptor, shader,
+    DirectionalShadow, ShadowBindings, ShadowBindingsDescriptor, error::BindingsError, shader,
 };
 
 /// Index of the bind group that `shadow_sun` reads.

@@ -33,7 +33,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use glam::DVec3;
 use wgpu_shadows::{
-    DebugImage, DirectionalShadow, ShadowCaster, ShadowFrameDescriptor, ShadowScene,
+    DirectionalShadow, ShadowCaster, ShadowFrameDescriptor, ShadowScene, debug::DebugImage,
 };
 
 use common::gpu::Gpu;

@@ -2,9 +2,9 @@
 
 use glam::{Mat4, Quat, Vec3};
 use wgpu_shadows::{
-    Aabb, CameraView, CasterError, CasterPipeline, CasterPipelineDescriptor, CasterVertex,
-    Coverage, DirectionalLight, MeshCaster, MeshCasterDescriptor, MeshIndices, ModelTransform,
-    PositionAttribute,
+    Aabb, CameraView, CasterPipeline, Coverage, DirectionalLight, MeshCaster,
+    caster::CasterPipelineDescriptor, caster::CasterVertex, caster::MeshCasterDescriptor,
+    caster::MeshIndices, caster::ModelTransform, caster::PositionAttribute, error::CasterError,
 };
 
 use crate::common::mesh::{Instance, Object, Vertex, cube, square};

@@ -1,8 +1,8 @@
 //! Lists what the depth passes and pipelines of casters need of a device's limits.
 
-use crate::CasterError;
 use crate::cast::pipeline_descriptor::{CasterPipelineDescriptor, CasterVertex, ModelTransform};
 use crate::cast::view_uniform::VIEW_UNIFORM_BYTES;
+use crate::error::CasterError;
 use crate::gpu::Need;
 
 /// Returns the needs of a depth pass's bind group: one uniform buffer, chosen by a dynamic offset.

@@ -8,6 +8,7 @@ use crate::cast::draw_casters::{DrawnCaster, PassDefaults, draw_casters};
 use crate::cast::layer_cache::ViewDraws;
 use crate::cast::view_uniform::{CasterViewUniform, VIEW_UNIFORM_BYTES, multiview_layout};
 use crate::cast::{CasterPipeline, FrameCasters};
+use crate::error::DeviceError;
 use crate::gpu::{
     ALL_FACES_MASK, DepthMap, FACE_COUNT, PendingUpload, UploadBuffer, capture_device_errors,
     supports_cube_multiview,
@@ -54,11 +55,12 @@ impl CubePass {
                 }],
             })
         };
-        let bind_group =
-            capture_device_errors(device, create).map_err(|refusal| ShadowError::Device {
+        let bind_group = capture_device_errors(device, create).map_err(|refusal| {
+            ShadowError::Device(DeviceError {
                 object: "the bind group of the casters",
                 refusal,
-            })?;
+            })
+        })?;
         Ok(Some(Self {
             label,
             faces,

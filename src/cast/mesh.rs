@@ -8,6 +8,7 @@ use crate::cast::mesh_check::{check_bounds, check_buffers, check_matrix, check_p
 use crate::cast::mesh_descriptor::{MeshCasterDescriptor, MeshIndices};
 use crate::cast::{CasterPipeline, ModelTransform, Revision, ShadowCaster};
 use crate::error::CasterError;
+use crate::error::DeviceError;
 use crate::gpu::filled_buffer;
 use crate::{Aabb, ShadowView};
 
@@ -138,9 +139,11 @@ impl MeshCaster {
             &matrix_bytes(&self.pipeline, render_from_model),
             wgpu::BufferUsages::VERTEX,
         )
-        .map_err(|refusal| CasterError::Device {
-            object: "the transform of a mesh",
-            refusal,
+        .map_err(|refusal| {
+            CasterError::Device(DeviceError {
+                object: "the transform of a mesh",
+                refusal,
+            })
         })
     }
 }

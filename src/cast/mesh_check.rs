@@ -7,8 +7,9 @@ use glam::Mat4;
 use crate::cast::CasterPipeline;
 use crate::cast::mesh_descriptor::{MeshCasterDescriptor, MeshIndices};
 use crate::error::CasterError;
+use crate::error::DeviceError;
 use crate::gpu::capture_device_errors;
-use crate::{Aabb, DeviceRefusal};
+use crate::{Aabb, error::DeviceRefusal};
 
 pub(crate) fn check_matrix(render_from_model: &Mat4) -> Result<(), CasterError> {
     if render_from_model.is_finite() {
@@ -128,10 +129,10 @@ fn check_owner(
         match capture_device_errors(device, commands) {
             Ok(_) => Ok(()),
             Err(refusal @ DeviceRefusal::Refused(_)) => Err(CasterError::Buffer { field, refusal }),
-            Err(refusal) => Err(CasterError::Device {
+            Err(refusal) => Err(CasterError::Device(DeviceError {
                 object: "a mesh",
                 refusal,
-            }),
+            })),
         }
     };
     let vertices = descriptor.vertices;

@@ -11,6 +11,7 @@ use crate::cast::pipeline_descriptor::{
 };
 use crate::cast::pipeline_reads::{VertexReads, beyond_a_mesh};
 use crate::error::CasterError;
+use crate::error::DeviceError;
 use crate::gpu::{DepthFormat, capture_device_errors};
 
 /// Holds the depth-only pipelines of one kind of caster. It is a handle and cheap to clone.
@@ -67,9 +68,11 @@ impl CasterPipeline {
         };
         check_caster(device, descriptor)?;
         let by_format = capture_device_errors(device, || create_pipelines(device, descriptor))
-            .map_err(|refusal| CasterError::Device {
-                object: "a caster pipeline",
-                refusal,
+            .map_err(|refusal| {
+                CasterError::Device(DeviceError {
+                    object: "a caster pipeline",
+                    refusal,
+                })
             })?;
         Ok(Self {
             variants: Arc::new(Variants {

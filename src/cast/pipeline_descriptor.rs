@@ -81,7 +81,7 @@ pub enum CasterVertex<'a> {
 }
 
 /// Describes what a [`CasterPipeline`](crate::CasterPipeline) is made of.
-/// [`CasterPipeline::new`](crate::CasterPipeline::new) checks it, and returns [`CasterError`](crate::CasterError) for
+/// [`CasterPipeline::new`](crate::CasterPipeline::new) checks it, and returns [`CasterError`](crate::error::CasterError) for
 /// what cannot be drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct CasterPipelineDescriptor<'a> {
@@ -92,7 +92,7 @@ pub struct CasterPipelineDescriptor<'a> {
     /// Selects which faces, as seen from the light, are left out of the map. `None` (the default) suits every mesh,
     /// open sheets included. `Some(Face::Front)` is the classic cure for peter-panning: it needs closed solids, and
     /// light leaks where they touch the ground exactly. `Some(Face::Back)` takes a third off the cost of closed solids
-    /// and changes nothing of their shadows; [`is_closed_solid`](crate::is_closed_solid) recognises them. A sheet whose
+    /// and changes nothing of their shadows; [`is_closed_solid`](crate::caster::is_closed_solid) recognises them. A sheet whose
     /// face toward the light is left out casts no shadow.
     pub cull: Option<wgpu::Face>,
     /// Is the winding of front faces: counter-clockwise by default. It is the winding in the engine's space unless the

@@ -5,6 +5,7 @@ use crate::cast::draw_casters::{DrawnCaster, PassDefaults, draw_casters};
 use crate::cast::layer_cache::{LayerCache, Plan, ViewDraws};
 use crate::cast::view_uniform::{CasterViewUniform, VIEW_UNIFORM_BYTES, view_layout};
 use crate::cast::{CLEAR, CasterPipeline, FrameCasters};
+use crate::error::DeviceError;
 use crate::gpu::{DepthFormat, DepthMap, PendingUpload, UploadBuffer, capture_device_errors};
 use crate::{ShadowError, ShadowView};
 
@@ -77,11 +78,12 @@ impl Recorder {
                 }],
             })
         };
-        let bind_group =
-            capture_device_errors(device, create).map_err(|refusal| ShadowError::Device {
+        let bind_group = capture_device_errors(device, create).map_err(|refusal| {
+            ShadowError::Device(DeviceError {
                 object: "the bind group of the casters",
                 refusal,
-            })?;
+            })
+        })?;
         let layers = (0..layers).map(|layer| Layer {
             label: format!("{label} layer {layer}"),
             cache: LayerCache::default(),

@@ -1,6 +1,6 @@
 //! What the pictures of a debug view need of a device's limits.
 
-use crate::DebugViewError;
+use crate::error::DebugViewError;
 use crate::gpu::Need;
 use crate::receive::view_uniform_bytes;
 

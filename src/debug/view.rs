@@ -5,6 +5,7 @@ use glam::Mat4;
 
 use crate::debug::cascade_tint::CascadeTint;
 use crate::debug::limits::check_debug_view;
+use crate::error::DeviceError;
 use crate::error::{DebugViewError, DeviceRefusal};
 use crate::gpu::{capture_device_errors, filled_buffer, fullscreen_pipeline};
 use crate::receive::{Selection, ShadowMaps, ShadowViewUniform};
@@ -216,7 +217,7 @@ impl DebugView {
 }
 
 fn not_made(object: &'static str) -> impl Fn(DeviceRefusal) -> DebugViewError {
-    move |refusal| DebugViewError::Device { object, refusal }
+    move |refusal| DebugViewError::Device(DeviceError { object, refusal })
 }
 
 fn create_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {

@@ -3,7 +3,7 @@
 /// Selects the format of a depth map. All depths are reversed: near 1, far 0.
 ///
 /// The pipelines of casters must be made for the format
-/// ([`CasterPipelineDescriptor::depth_formats`](crate::CasterPipelineDescriptor::depth_formats)); a light whose format
+/// ([`CasterPipelineDescriptor::depth_formats`](crate::caster::CasterPipelineDescriptor::depth_formats)); a light whose format
 /// a caster lacks returns [`ShadowError::CasterFormat`](crate::ShadowError::CasterFormat) when it is recorded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
@@ -13,7 +13,7 @@ pub enum DepthFormat {
     Float32,
     /// Stores 16-bit steps, 2 bytes a texel, for directional lights alone. A step is 1/65535 of the depth range (100 m:
     /// 1.5 mm, 1 km: 15 mm). The bias grows by one step, and the gap that it can leave by two
-    /// ([`ViewReport::max_peter_panning_world`](crate::ViewReport::max_peter_panning_world)). The step is invisible while it is below a
+    /// ([`ViewReport::max_peter_panning_world`](crate::report::ViewReport::max_peter_panning_world)). The step is invisible while it is below a
     /// quarter of a texel, at ranges under some 16 000 texel sizes; beyond that, shadows first go missing at contacts.
     ///
     /// Local lights keep 32 bits: the step of a perspective depth grows with the square of the distance, to metres at

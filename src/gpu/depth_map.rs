@@ -1,7 +1,8 @@
 //! Defines the depth texture that a light owns, with one layer per view.
 
+use crate::error::DeviceError;
 use crate::gpu::{DepthFormat, capture_device_errors};
-use crate::{DeviceRefusal, ShadowError};
+use crate::{ShadowError, error::DeviceRefusal};
 
 /// Holds a layered depth texture, with one attachment per layer and one texture view of them all.
 #[derive(Debug)]
@@ -89,10 +90,10 @@ impl DepthMap {
                 field,
                 bytes: bytes(size, allocated, format),
             },
-            refusal => ShadowError::Device {
+            refusal => ShadowError::Device(DeviceError {
                 object: "the depth map",
                 refusal,
-            },
+            }),
         })
     }
 

@@ -8,7 +8,7 @@ use std::future::Future;
 use std::pin::pin;
 use std::task::{Context, Poll, Waker};
 
-use crate::DeviceRefusal;
+use crate::error::DeviceRefusal;
 
 /// Runs `create` and returns what it made if the device made all of it. In a browser with WebGPU no error is captured,
 /// and an object that could not be made is an invalid one, as WebGPU specifies.

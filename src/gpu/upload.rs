@@ -1,7 +1,8 @@
 //! Defines small uniform buffers that are written in the order of the engine's own commands.
 
+use crate::error::DeviceError;
 use crate::gpu::{capture_device_errors, filled_buffer};
-use crate::{DeviceRefusal, ShadowError};
+use crate::{ShadowError, error::DeviceRefusal};
 
 /// Is a uniform buffer whose writes go through the engine's encoder, so that two frames recorded before one submission
 /// each see their own values. Unchanged contents are not written again.
@@ -74,8 +75,8 @@ impl UploadBuffer {
 }
 
 fn refused(refusal: DeviceRefusal) -> ShadowError {
-    ShadowError::Device {
+    ShadowError::Device(DeviceError {
         object: "a uniform buffer",
         refusal,
-    }
+    })
 }

@@ -39,7 +39,7 @@ pub struct DirectionalShadowDescriptor<'a> {
     /// What may change the extent of a cascade.
     pub stability: Stability,
     /// How the maps store depths. `Unorm16` halves their memory; casters need pipelines for it
-    /// ([`CasterPipelineDescriptor::depth_formats`](crate::CasterPipelineDescriptor::depth_formats)).
+    /// ([`CasterPipelineDescriptor::depth_formats`](crate::caster::CasterPipelineDescriptor::depth_formats)).
     pub depth_format: DepthFormat,
 }
 

@@ -6,7 +6,7 @@ use glam::DVec3;
 use crate::cast::ViewDraws;
 use crate::fit::{LightAxes, LocalFit, LocalInput, MAX_LOCAL_VIEWS, Reached};
 use crate::receive::{LayerState, MapsFrame, ShadowMaps};
-use crate::{ShadowError, ShadowFrame, ShadowReport, ShadowView};
+use crate::{ShadowError, ShadowFrame, ShadowView, report::ShadowReport};
 
 /// State of the lights in the slots of one set of maps.
 #[derive(Debug)]

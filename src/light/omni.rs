@@ -9,7 +9,7 @@ use crate::light::local::{LocalLights, LocalPlacement};
 use crate::receive::{
     Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, check_bias, check_filter,
 };
-use crate::{Bias, Filter, ShadowError, ShadowFrame, ShadowReport};
+use crate::{Bias, Filter, ShadowError, ShadowFrame, report::ShadowReport};
 
 /// What an [`OmniShadow`] is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +55,7 @@ pub struct OmniLight {
 /// frame in which
 ///
 /// - each face that anything casts into is drawn whole: none is kept, and none is made from what stands still;
-/// - every caster has a built-in vertex stage ([`CasterVertex::BuiltIn`](crate::CasterVertex::BuiltIn)), tells its triangles
+/// - every caster has a built-in vertex stage ([`CasterVertex::BuiltIn`](crate::caster::CasterVertex::BuiltIn)), tells its triangles
 ///   ([`ShadowCaster::triangles`]) and draws the same into every view ([`ShadowCaster::same_in_every_view`]), as
 ///   [`MeshCaster`](crate::MeshCaster) does;
 /// - no caster goes on beyond the light's range into a face that its nearer part does not touch;

@@ -9,7 +9,7 @@ use crate::receive::{
     Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, check_bias, check_filter,
     check_planar_filter,
 };
-use crate::{Bias, Filter, OmniLight, ShadowError, ShadowFrame, ShadowReport, SpotLight};
+use crate::{Bias, Filter, OmniLight, ShadowError, ShadowFrame, SpotLight, report::ShadowReport};
 
 /// What a pool is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]

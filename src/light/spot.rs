@@ -9,7 +9,7 @@ use crate::light::local::{LocalLights, LocalPlacement};
 use crate::receive::{
     Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, check_bias, check_planar_filter,
 };
-use crate::{Bias, Filter, ShadowError, ShadowFrame, ShadowReport};
+use crate::{Bias, Filter, ShadowError, ShadowFrame, report::ShadowReport};
 
 /// What a [`SpotShadow`] is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]

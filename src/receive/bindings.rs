@@ -1,6 +1,7 @@
 //! One bind group for a set of lights, and the WGSL for exactly that set.
 
 use crate::error::BindingsError;
+use crate::error::DeviceError;
 use crate::gpu::{Need, capture_device_errors};
 use crate::receive::emit;
 use crate::receive::filter::FilterSampler;
@@ -99,9 +100,11 @@ impl ShadowBindings {
             let bind_group = create_bind_group(device, label, &lights, &samplers, &layout);
             (layout, bind_group)
         })
-        .map_err(|refusal| BindingsError::Device {
-            object: "the bind group of the lights",
-            refusal,
+        .map_err(|refusal| {
+            BindingsError::Device(DeviceError {
+                object: "the bind group of the lights",
+                refusal,
+            })
         })?;
         Ok(Self {
             layout,

@@ -3,18 +3,19 @@
 use glam::Vec3;
 
 use crate::cast::{FrameCasters, Plan, Recorder, ViewDraws};
+use crate::error::DeviceError;
 use crate::gpu::{DepthMap, UploadBuffer, capture_device_errors};
 use crate::receive::report::{ShadowReport, ViewReport, ViewStatus};
 use crate::receive::sampled_maps::{SampledMaps, Selection};
 use crate::receive::{
     Sampling, ShadowViewUniform, empty_view_uniform, endless_range, view_uniform,
 };
-use crate::{ShadowError, ShadowView, SliceReport};
+use crate::{ShadowError, ShadowView, report::SliceReport};
 
 /// What every light owns and what is looked up: a depth texture, a uniform buffer, and how they are to be read.
 ///
 /// A light hands it out by its `maps` method. It goes into a [`ShadowBindings`](crate::ShadowBindings) and a
-/// [`DebugView`](crate::DebugView) as it is; the parts are there for engines with their own bind groups. Texture and buffer stay
+/// [`DebugView`](crate::debug::DebugView) as it is; the parts are there for engines with their own bind groups. Texture and buffer stay
 /// the same for the light's whole life, so a bind group outlives every frame.
 #[derive(Debug)]
 pub struct ShadowMaps {
@@ -240,9 +241,11 @@ impl ShadowMaps {
         let draws = views.iter().any(|draws| draws.plan != Plan::Keep);
         if draws && upload.is_none() && !prepared.uploads() {
             // Nothing was made on the device, which so had no occasion to say that it is lost.
-            capture_device_errors(device, || ()).map_err(|refusal| ShadowError::Device {
-                object: "a depth pass",
-                refusal,
+            capture_device_errors(device, || ()).map_err(|refusal| {
+                ShadowError::Device(DeviceError {
+                    object: "a depth pass",
+                    refusal,
+                })
             })?;
         }
         // Nothing fails from here on.

@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use crate::SliceReport;
+use crate::report::SliceReport;
 
 /// What became of a view in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

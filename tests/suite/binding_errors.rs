@@ -2,8 +2,8 @@
 //! message.
 
 use wgpu_shadows::{
-    BindingsError, DebugImage, DebugView, DebugViewError, DirectionalShadow,
-    DirectionalShadowDescriptor, ShadowBindings, ShadowBindingsDescriptor, shader,
+    DirectionalShadow, DirectionalShadowDescriptor, ShadowBindings, ShadowBindingsDescriptor,
+    debug::DebugImage, debug::DebugView, error::BindingsError, error::DebugViewError, shader,
 };
 
 use crate::support::gpu::{Gpu, gpu};

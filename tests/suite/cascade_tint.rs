@@ -2,8 +2,8 @@
 
 use glam::{DVec3, DVec4, Mat4};
 use wgpu_shadows::{
-    DebugView, DebugViewError, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    reference,
+    DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, debug::DebugView,
+    error::DebugViewError, error::DeviceError, reference,
 };
 
 use crate::support::camera::Camera;
@@ -201,7 +201,7 @@ fn what_cannot_be_tinted_is_refused() {
     let other = color_target(gpu, 16).create_view(&Default::default());
     let refused = draw(&blendable, &other).expect_err("no depth");
     assert!(
-        matches!(refused, DebugViewError::Device { .. }),
+        matches!(refused, DebugViewError::Device(DeviceError { .. })),
         "{refused}"
     );
     drop(pass);

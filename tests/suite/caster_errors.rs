@@ -1,8 +1,8 @@
 //! What `CasterPipeline` refuses: each error provoked, compared as a value, and read as a message.
 
 use wgpu_shadows::{
-    CasterError, CasterPipeline, CasterPipelineDescriptor, CasterVertex, DeviceRefusal,
-    ModelTransform, PositionAttribute,
+    CasterPipeline, caster::CasterPipelineDescriptor, caster::CasterVertex, caster::ModelTransform,
+    caster::PositionAttribute, error::CasterError, error::DeviceError, error::DeviceRefusal,
 };
 
 use crate::support::gpu::gpu;
@@ -162,10 +162,10 @@ fn wgsl_that_the_device_refuses() {
     ];
     for (descriptor, word) in cases {
         let error = pipeline(&descriptor).expect_err(word);
-        let CasterError::Device {
+        let CasterError::Device(DeviceError {
             object,
             refusal: DeviceRefusal::Refused(message),
-        } = &error
+        }) = &error
         else {
             panic!("{error:?}");
         };

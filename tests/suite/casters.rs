@@ -3,9 +3,10 @@
 use glam::{DVec3, Mat4, Quat, Vec3, Vec4};
 use wgpu::{BufferUsages, VertexFormat};
 use wgpu_shadows::{
-    Aabb, CasterPipeline, CasterPipelineDescriptor, CasterVertex, DirectionalLight,
-    DirectionalShadow, DirectionalShadowDescriptor, MeshCaster, MeshCasterDescriptor, MeshIndices,
-    ModelTransform, PositionAttribute, ShadowCaster, ShadowView,
+    Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    MeshCaster, ShadowCaster, ShadowView, caster::CasterPipelineDescriptor, caster::CasterVertex,
+    caster::MeshCasterDescriptor, caster::MeshIndices, caster::ModelTransform,
+    caster::PositionAttribute,
 };
 
 use crate::support::frames::{Coverage, DirectionalFrame};

@@ -2,9 +2,9 @@
 
 use glam::{DVec3, Mat4, Quat, Vec3};
 use wgpu_shadows::{
-    CasterPipeline, CasterPipelineDescriptor, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowCaster,
-    is_closed_solid,
+    CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniLight,
+    OmniShadow, OmniShadowDescriptor, ShadowCaster, caster::CasterPipelineDescriptor,
+    caster::is_closed_solid,
 };
 
 use crate::support::frames::{Coverage, DirectionalFrame, OmniFrame, RecordFrame};

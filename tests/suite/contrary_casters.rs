@@ -6,9 +6,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, CasterPipeline, CasterPipelineDescriptor, DepthFormat, DirectionalLight,
-    DirectionalShadow, DirectionalShadowDescriptor, MeshCaster, Revision, ShadowCaster,
-    ShadowError, ShadowReport, ShadowView, ViewReport, ViewStatus,
+    Aabb, CasterPipeline, DepthFormat, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, MeshCaster, Revision, ShadowCaster, ShadowError, ShadowView,
+    caster::CasterPipelineDescriptor, report::ShadowReport, report::ViewReport, report::ViewStatus,
 };
 
 use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};

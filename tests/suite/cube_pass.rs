@@ -1,7 +1,7 @@
 //! Six faces of a point light in one pass: the depths of a pass each, bit for bit.
 
 use glam::{DVec3, Mat4, Vec3};
-use wgpu_shadows::{Aabb, ViewStatus};
+use wgpu_shadows::{Aabb, report::ViewStatus};
 
 use crate::support::camera::Camera;
 use crate::support::cube_pair::{

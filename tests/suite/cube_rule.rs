@@ -2,8 +2,8 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    CasterPipeline, CasterPipelineDescriptor, CasterVertex, OmniLight, OmniShadow,
-    OmniShadowDescriptor, ViewStatus,
+    CasterPipeline, OmniLight, OmniShadow, OmniShadowDescriptor, caster::CasterPipelineDescriptor,
+    caster::CasterVertex, report::ViewStatus,
 };
 
 use crate::support::cube_pair::{LIGHT, Pair, Stage, furnished, room};

@@ -4,9 +4,10 @@
 use glam::{DVec3, Vec3};
 use image::RgbaImage;
 use wgpu_shadows::{
-    Aabb, DebugImage, DebugView, DebugViewError, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, OmniLight, OmniShadow, OmniShadowDescriptor, OmniShadowPool,
-    PoolDescriptor, PoolLight, ShadowMaps, SpotLight, SpotShadow, SpotShadowDescriptor,
+    Aabb, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniLight, OmniShadow,
+    OmniShadowDescriptor, ShadowMaps, SpotLight, SpotShadow, SpotShadowDescriptor,
+    debug::DebugImage, debug::DebugView, error::DebugViewError, pool::OmniShadowPool,
+    pool::PoolDescriptor, pool::PoolLight,
 };
 
 use crate::support::ask::{record_omni, record_spot, submitted};

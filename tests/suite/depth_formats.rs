@@ -2,8 +2,9 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, CasterError, CasterPipeline, CasterPipelineDescriptor, DepthFormat, DirectionalLight,
-    DirectionalShadow, DirectionalShadowDescriptor, ShadowCaster, ShadowError,
+    Aabb, CasterPipeline, DepthFormat, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, ShadowCaster, ShadowError, caster::CasterPipelineDescriptor,
+    error::CasterError,
 };
 
 use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};

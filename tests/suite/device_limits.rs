@@ -5,11 +5,12 @@ use std::fmt::Debug;
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, BindingsError, CasterError, CasterPipeline, CasterPipelineDescriptor, CasterVertex,
-    DebugImage, DebugView, DebugViewError, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, ModelTransform, OmniShadow, OmniShadowDescriptor, OmniShadowPool,
-    PoolDescriptor, PositionAttribute, ShadowBindings, ShadowBindingsDescriptor, ShadowError,
-    ShadowViewUniform, SpotShadow, SpotShadowDescriptor, SpotShadowPool,
+    Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    OmniShadow, OmniShadowDescriptor, ShadowBindings, ShadowBindingsDescriptor, ShadowError,
+    ShadowViewUniform, SpotShadow, SpotShadowDescriptor, caster::CasterPipelineDescriptor,
+    caster::CasterVertex, caster::ModelTransform, caster::PositionAttribute, debug::DebugImage,
+    debug::DebugView, error::BindingsError, error::CasterError, error::DebugViewError,
+    pool::OmniShadowPool, pool::PoolDescriptor, pool::SpotShadowPool,
 };
 
 use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};

@@ -3,11 +3,13 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, BindingsError, CasterError, CasterPipeline, CasterPipelineDescriptor, DebugImage,
-    DebugView, DebugViewError, DeviceRefusal, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, OmniLight, OmniShadow, OmniShadowDescriptor, OmniShadowPool,
-    PoolDescriptor, PoolLight, ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowError,
-    SpotLight, SpotShadow, SpotShadowDescriptor, SpotShadowPool, ViewStatus,
+    Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    OmniLight, OmniShadow, OmniShadowDescriptor, ShadowBindings, ShadowBindingsDescriptor,
+    ShadowCaster, ShadowError, SpotLight, SpotShadow, SpotShadowDescriptor,
+    caster::CasterPipelineDescriptor, debug::DebugImage, debug::DebugView, error::BindingsError,
+    error::CasterError, error::DebugViewError, error::DeviceError, error::DeviceRefusal,
+    pool::OmniShadowPool, pool::PoolDescriptor, pool::PoolLight, pool::SpotShadowPool,
+    report::ViewStatus,
 };
 
 use crate::support::frames::{
@@ -185,53 +187,53 @@ fn a_lost_device_makes_nothing() {
     ];
     for error in errors {
         let error = error.expect("no light");
-        let wanted = ShadowError::Device {
+        let wanted = ShadowError::Device(DeviceError {
             object: "the depth map",
             refusal: refusal.clone(),
-        };
+        });
         assert_eq!(error, wanted);
         let text = "the device did not make the depth map: the device is lost";
         assert_eq!(error.to_string(), text);
     }
     let error = CasterPipeline::new(device, &CasterPipelineDescriptor::new());
-    let wanted = CasterError::Device {
+    let wanted = CasterError::Device(DeviceError {
         object: "a caster pipeline",
         refusal: refusal.clone(),
-    };
+    });
     assert_eq!(error.expect_err("no pipeline"), wanted);
     let error = wgpu_shadows::MeshCaster::new(
         device,
-        &wgpu_shadows::MeshCasterDescriptor {
+        &wgpu_shadows::caster::MeshCasterDescriptor {
             label: None,
             pipeline: &pipeline,
             vertices: &vertices,
-            indices: wgpu_shadows::MeshIndices::None { vertices: 0..3 },
+            indices: wgpu_shadows::caster::MeshIndices::None { vertices: 0..3 },
             bounds_model: mesh.bounds(),
             render_from_model: Mat4::IDENTITY,
         },
     );
-    let wanted = CasterError::Device {
+    let wanted = CasterError::Device(DeviceError {
         object: "a mesh",
         refusal: refusal.clone(),
-    };
+    });
     assert_eq!(error.expect_err("no mesh"), wanted);
-    let wanted = BindingsError::Device {
+    let wanted = BindingsError::Device(DeviceError {
         object: "the bind group of the lights",
         refusal: refusal.clone(),
-    };
+    });
     assert_eq!(bindings(&lost, &all.sun).expect_err("no bindings"), wanted);
-    let wanted = DebugViewError::Device {
+    let wanted = DebugViewError::Device(DeviceError {
         object: "the pipelines of a debug view",
         refusal: refusal.clone(),
-    };
+    });
     let error = DebugView::new(device, FORMAT).expect_err("no debug view");
     assert_eq!(error, wanted);
 
     for error in all.record(&lost, &[&caster]) {
-        let wanted = ShadowError::Device {
+        let wanted = ShadowError::Device(DeviceError {
             object: "a uniform buffer",
             refusal: refusal.clone(),
-        };
+        });
         assert_eq!(error, Some(wanted));
     }
     assert_eq!(
@@ -243,10 +245,10 @@ fn a_lost_device_makes_nothing() {
     let mut pass = color_pass(&mut encoder, &target);
     let picture = DebugImage::Layer(0);
     let error = all.view.draw(&mut pass, all.sun.maps(), picture);
-    let wanted = DebugViewError::Device {
+    let wanted = DebugViewError::Device(DeviceError {
         object: "the bind group of a debug view",
         refusal,
-    };
+    });
     assert_eq!(error, Err(wanted));
     table::record(
         "a lost device",
@@ -285,10 +287,10 @@ fn a_lost_device_draws_nothing() {
     assert_eq!(status(&caster), Ok(ViewStatus::Kept));
     let changed = caster.geometry_changed(mesh.bounds());
     changed.expect("finite bounds");
-    let error = ShadowError::Device {
+    let error = ShadowError::Device(DeviceError {
         object: "a depth pass",
         refusal: DeviceRefusal::Lost,
-    };
+    });
     assert_eq!(status(&caster), Err(error));
 }
 
@@ -298,10 +300,10 @@ fn a_light_of_another_device_is_refused() {
     let [here, there] = Gpu::two();
     let mut all = Everything::new(&here);
     let error = bindings(&there, &all.sun).expect_err("no bindings");
-    let BindingsError::Device {
+    let BindingsError::Device(DeviceError {
         object,
         refusal: DeviceRefusal::Refused(message),
-    } = &error
+    }) = &error
     else {
         panic!("{error:?}");
     };
@@ -318,10 +320,10 @@ fn a_light_of_another_device_is_refused() {
         assert!(
             matches!(
                 error,
-                Err(DebugViewError::Device {
+                Err(DebugViewError::Device(DeviceError {
                     refusal: DeviceRefusal::Refused(_),
                     ..
-                })
+                }))
             ),
             "{error:?}"
         );

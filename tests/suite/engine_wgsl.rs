@@ -3,8 +3,9 @@
 use glam::{DVec3, Mat4, Vec3};
 use wgpu::util::DeviceExt;
 use wgpu_shadows::{
-    Aabb, CasterPipeline, CasterPipelineDescriptor, CasterVertex, DirectionalLight,
-    DirectionalShadow, DirectionalShadowDescriptor, Revision, ShadowCaster, ShadowView, ViewStatus,
+    Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    Revision, ShadowCaster, ShadowView, caster::CasterPipelineDescriptor, caster::CasterVertex,
+    report::ViewStatus,
 };
 
 use crate::support::frames::{Coverage, DirectionalFrame};

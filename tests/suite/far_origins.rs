@@ -5,7 +5,7 @@ use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
     Aabb, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, MeshCaster, OmniLight,
     OmniShadow, OmniShadowDescriptor, ShadowCaster, ShadowError, ShadowView, ShadowViewUniform,
-    SpotLight, SpotShadow, SpotShadowDescriptor, Stability, ViewStatus,
+    SpotLight, SpotShadow, SpotShadowDescriptor, Stability, report::ViewStatus,
 };
 
 use crate::support::ask::{Ask, record_omni, record_spot, submitted};

@@ -3,8 +3,8 @@
 use glam::{DVec3, Vec3};
 use image::RgbaImage;
 use wgpu_shadows::{
-    Aabb, Bias, CameraView, DebugImage, DebugView, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, Filter, ShadowBindings, ShadowBindingsDescriptor,
+    Aabb, Bias, CameraView, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    Filter, ShadowBindings, ShadowBindingsDescriptor, debug::DebugImage, debug::DebugView,
 };
 
 use crate::support::camera::Camera;

@@ -3,7 +3,7 @@
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
     Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    MeshCaster, Revision, ShadowCaster, ShadowReport, ShadowView, ViewStatus,
+    MeshCaster, Revision, ShadowCaster, ShadowView, report::ShadowReport, report::ViewStatus,
 };
 
 use crate::support::camera::Camera;

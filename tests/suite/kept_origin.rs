@@ -4,8 +4,9 @@
 use glam::{DMat3, DVec3, Mat4, Quat, Vec3};
 use wgpu_shadows::{
     Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    MeshCaster, PoolDescriptor, PoolLight, Revision, ShadowCaster, ShadowReport, ShadowView,
-    SpotLight, SpotShadow, SpotShadowDescriptor, SpotShadowPool, ViewStatus,
+    MeshCaster, Revision, ShadowCaster, ShadowView, SpotLight, SpotShadow, SpotShadowDescriptor,
+    pool::PoolDescriptor, pool::PoolLight, pool::SpotShadowPool, report::ShadowReport,
+    report::ViewStatus,
 };
 
 use crate::support::ask::{Ask, record_spot, submitted};

@@ -2,9 +2,9 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, CasterError, CasterPipeline, CasterPipelineDescriptor, CasterVertex, DeviceRefusal,
-    DirectionalLight, DirectionalShadow, MeshCaster, MeshCasterDescriptor, MeshIndices,
-    ShadowCaster,
+    Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, MeshCaster, ShadowCaster,
+    caster::CasterPipelineDescriptor, caster::CasterVertex, caster::MeshCasterDescriptor,
+    caster::MeshIndices, error::CasterError, error::DeviceRefusal,
 };
 
 use crate::support::frames::{Coverage, DirectionalFrame};

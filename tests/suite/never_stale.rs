@@ -3,9 +3,10 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, CasterPipeline, CasterPipelineDescriptor, DepthFormat, DirectionalLight,
-    DirectionalShadow, DirectionalShadowDescriptor, MeshCaster, OmniLight, OmniShadow,
-    OmniShadowDescriptor, ShadowCaster, ShadowReport, ShadowView, ViewReport, ViewStatus,
+    Aabb, CasterPipeline, DepthFormat, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor,
+    ShadowCaster, ShadowView, caster::CasterPipelineDescriptor, report::ShadowReport,
+    report::ViewReport, report::ViewStatus,
 };
 
 use crate::support::camera::Camera;

@@ -3,8 +3,8 @@
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
-    Aabb, Bias, CameraView, Filter, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowReport,
-    ViewStatus,
+    Aabb, Bias, CameraView, Filter, OmniLight, OmniShadow, OmniShadowDescriptor,
+    report::ShadowReport, report::ViewStatus,
 };
 
 use crate::support::ask::{Ask, record_omni};

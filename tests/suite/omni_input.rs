@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
-    Aabb, Filter, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowError, ViewStatus,
+    Aabb, Filter, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowError, report::ViewStatus,
 };
 
 use crate::support::ask::{Ask, record_omni};

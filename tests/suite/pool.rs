@@ -2,9 +2,10 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, OmniLight, OmniShadow, OmniShadowDescriptor, OmniShadowPool, PoolDescriptor, PoolLight,
-    ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowError, ShadowReport, ShadowSlot,
-    SpotLight, SpotShadow, SpotShadowDescriptor, SpotShadowPool,
+    Aabb, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowBindings, ShadowBindingsDescriptor,
+    ShadowCaster, ShadowError, SpotLight, SpotShadow, SpotShadowDescriptor, pool::OmniShadowPool,
+    pool::PoolDescriptor, pool::PoolLight, pool::ShadowSlot, pool::SpotShadowPool,
+    report::ShadowReport,
 };
 
 use crate::support::ask::{Ask, record_omni, record_spot, submitted};

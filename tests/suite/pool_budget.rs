@@ -2,7 +2,8 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, MeshCaster, OmniLight, OmniShadowPool, PoolLight, ShadowCaster, ViewReport, ViewStatus,
+    Aabb, MeshCaster, OmniLight, ShadowCaster, pool::OmniShadowPool, pool::PoolLight,
+    report::ViewReport, report::ViewStatus,
 };
 
 use crate::suite::pool::{bits, frame, lamp, pool, record};

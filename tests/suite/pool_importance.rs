@@ -2,7 +2,8 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, PoolDescriptor, PoolLight, Revision, ShadowCaster, SpotLight, SpotShadowPool, ViewStatus,
+    Aabb, Revision, ShadowCaster, SpotLight, pool::PoolDescriptor, pool::PoolLight,
+    pool::SpotShadowPool, report::ViewStatus,
 };
 
 use crate::suite::pool::frame;

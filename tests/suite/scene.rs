@@ -4,8 +4,8 @@ use glam::{DMat4, DVec3, Mat4, Vec3};
 use wgpu_shadows::{
     Aabb, CameraView, CasterPipeline, Coverage, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor, Revision,
-    ShadowCaster, ShadowError, ShadowFrameDescriptor, ShadowReport, ShadowScene, ShadowView,
-    SpotLight, SpotShadow, SpotShadowDescriptor, Stability, ViewStatus,
+    ShadowCaster, ShadowError, ShadowFrameDescriptor, ShadowScene, ShadowView, SpotLight,
+    SpotShadow, SpotShadowDescriptor, Stability, report::ShadowReport, report::ViewStatus,
 };
 
 use crate::support::ask::Ask;

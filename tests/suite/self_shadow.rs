@@ -6,7 +6,7 @@
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
     Aabb, Bias, DepthFormat, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    Filter, ShadowReport,
+    Filter, report::ShadowReport,
 };
 
 use crate::support::frames::{Coverage, DirectionalFrame};

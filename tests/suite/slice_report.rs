@@ -2,7 +2,8 @@
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
-    DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, ShadowReport, Stability,
+    DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Stability,
+    report::ShadowReport,
 };
 
 use crate::support::camera::{Camera, Lens};

@@ -2,7 +2,7 @@
 //! for it. There the library draws what it draws elsewhere.
 
 use image::RgbaImage;
-use wgpu_shadows::{Bias, DebugImage, DebugView, Filter, shader};
+use wgpu_shadows::{Bias, Filter, debug::DebugImage, debug::DebugView, shader};
 
 use crate::support::child;
 use crate::support::floor::{SIZE, picture};

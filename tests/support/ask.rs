@@ -1,8 +1,8 @@
 //! Asks any set of lights through `ShadowBindings`, and records their frames.
 
 use wgpu_shadows::{
-    OmniShadow, ShadowBindings, ShadowBindingsDescriptor, ShadowError, ShadowMaps, ShadowReport,
-    SpotShadow,
+    OmniShadow, ShadowBindings, ShadowBindingsDescriptor, ShadowError, ShadowMaps, SpotShadow,
+    report::ShadowReport,
 };
 
 use crate::support::frames::{OmniFrame, RecordFrame, SpotFrame};

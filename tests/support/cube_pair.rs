@@ -2,8 +2,9 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, CameraView, CasterPipeline, CasterPipelineDescriptor, MeshCaster, OmniLight, OmniShadow,
-    OmniShadowDescriptor, Revision, ShadowCaster, ShadowReport, ShadowView, ViewStatus,
+    Aabb, CameraView, CasterPipeline, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor,
+    Revision, ShadowCaster, ShadowView, caster::CasterPipelineDescriptor, report::ShadowReport,
+    report::ViewStatus,
 };
 
 use crate::support::frames::{OmniFrame, RecordFrame};

@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 use wgpu_shadows::{
-    Aabb, CameraView, DirectionalLight, DirectionalShadow, OmniLight, OmniShadow, OmniShadowPool,
-    PoolLight, ShadowCaster, ShadowError, ShadowFrameDescriptor, ShadowReport, ShadowScene,
-    SpotLight, SpotShadow, SpotShadowPool,
+    Aabb, CameraView, DirectionalLight, DirectionalShadow, OmniLight, OmniShadow, ShadowCaster,
+    ShadowError, ShadowFrameDescriptor, ShadowScene, SpotLight, SpotShadow, pool::OmniShadowPool,
+    pool::PoolLight, pool::SpotShadowPool, report::ShadowReport,
 };
 
 /// What the maps of a directional light are to cover.

@@ -3,8 +3,9 @@
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
     Aabb, Bias, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter,
-    OmniLight, OmniShadow, OmniShadowDescriptor, OmniShadowPool, PoolDescriptor, PoolLight,
-    ShadowMaps, SpotLight, SpotShadow, SpotShadowDescriptor, SpotShadowPool,
+    OmniLight, OmniShadow, OmniShadowDescriptor, ShadowMaps, SpotLight, SpotShadow,
+    SpotShadowDescriptor, pool::OmniShadowPool, pool::PoolDescriptor, pool::PoolLight,
+    pool::SpotShadowPool,
 };
 
 use crate::support::ask::{record_omni, record_spot, submitted};
@@ -242,7 +243,7 @@ fn pool(map_size: u32, filter: Filter, bias: Bias) -> PoolDescriptor<'static> {
     }
 }
 
-fn in_pool<L>(slot: wgpu_shadows::ShadowSlot, light: L) -> PoolLight<L> {
+fn in_pool<L>(slot: wgpu_shadows::pool::ShadowSlot, light: L) -> PoolLight<L> {
     PoolLight {
         slot,
         light,

@@ -1,7 +1,9 @@
 //! Asks the library's WGSL for visibilities, from a compute shader in place of an engine's fragment shader.
 
 use glam::{DVec3, Vec3};
-use wgpu_shadows::{DirectionalShadow, ShadowBindings, ShadowBindingsDescriptor, ShadowReport};
+use wgpu_shadows::{
+    DirectionalShadow, ShadowBindings, ShadowBindingsDescriptor, report::ShadowReport,
+};
 
 use crate::support::frames::{DirectionalFrame, RecordFrame};
 use crate::support::gpu::Gpu;

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3, Vec3};
 use proptest::prelude::*;
 use wgpu_shadows::{
     Aabb, CameraView, CascadeSplit, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, ShadowReport,
+    DirectionalShadowDescriptor, report::ShadowReport,
 };
 
 use crate::support::camera::{Camera, Lens, Pose};

@@ -1,6 +1,6 @@
 //! What every report must be.
 
-use wgpu_shadows::ShadowReport;
+use wgpu_shadows::report::ShadowReport;
 
 /// No figure of a report is NaN, and shares are shares.
 pub fn assert_whole(report: &ShadowReport, what: &str) {

@@ -2,8 +2,8 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, CasterPipeline, CasterPipelineDescriptor, DepthFormat, MeshCaster, MeshCasterDescriptor,
-    MeshIndices, ShadowCaster,
+    Aabb, CasterPipeline, DepthFormat, MeshCaster, ShadowCaster, caster::CasterPipelineDescriptor,
+    caster::MeshCasterDescriptor, caster::MeshIndices,
 };
 
 use crate::support::gpu::Gpu;

@@ -4,7 +4,8 @@ use glam::{DVec3, Vec3};
 use wgpu_shadows::reference::receiver;
 use wgpu_shadows::{
     Aabb, Bias, CascadeSplit, DirectionalLight, DirectionalShadowDescriptor, Filter, OmniLight,
-    OmniShadowPool, PoolDescriptor, PoolLight, ShadowCaster, SpotLight, SpotShadowPool,
+    ShadowCaster, SpotLight, pool::OmniShadowPool, pool::PoolDescriptor, pool::PoolLight,
+    pool::SpotShadowPool,
 };
 
 use super::stage::{SUM_ERROR, Sun, differ, scene};

@@ -2,7 +2,8 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, ShadowError, ViewStatus,
+    Aabb, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, ShadowError,
+    report::ViewStatus,
 };
 
 use super::stage::{Sun, caster};

@@ -8,9 +8,9 @@ use std::cell::RefCell;
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
     Aabb, CascadeSplit, DepthFormat, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, OmniLight, OmniShadow, OmniShadowDescriptor, OmniShadowPool,
-    PoolDescriptor, PoolLight, ShadowCaster, ShadowSlot, SpotLight, SpotShadow,
-    SpotShadowDescriptor, SpotShadowPool, Stability,
+    DirectionalShadowDescriptor, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowCaster,
+    SpotLight, SpotShadow, SpotShadowDescriptor, Stability, pool::OmniShadowPool,
+    pool::PoolDescriptor, pool::PoolLight, pool::ShadowSlot, pool::SpotShadowPool,
 };
 
 use proptest::{prop_assert, prop_assert_eq};

@@ -2,8 +2,8 @@
 
 use proptest::prelude::*;
 use wgpu_shadows::{
-    DebugImage, DebugView, OmniShadow, OmniShadowDescriptor, OmniShadowPool, PoolDescriptor,
-    ShadowBindings, ShadowBindingsDescriptor, SpotShadowPool, shader,
+    OmniShadow, OmniShadowDescriptor, ShadowBindings, ShadowBindingsDescriptor, debug::DebugImage,
+    debug::DebugView, pool::OmniShadowPool, pool::PoolDescriptor, pool::SpotShadowPool, shader,
 };
 
 use super::fuzz_values::{Counts, matrix, run};

@@ -5,8 +5,9 @@ use std::cell::RefCell;
 use glam::{DVec3, Mat4, Vec3};
 use proptest::prelude::*;
 use wgpu_shadows::{
-    Aabb, CasterPipeline, CasterPipelineDescriptor, CasterVertex, DepthFormat, MeshCaster,
-    MeshCasterDescriptor, MeshIndices, ModelTransform, PositionAttribute,
+    Aabb, CasterPipeline, DepthFormat, MeshCaster, caster::CasterPipelineDescriptor,
+    caster::CasterVertex, caster::MeshCasterDescriptor, caster::MeshIndices,
+    caster::ModelTransform, caster::PositionAttribute,
 };
 
 use super::fuzz_values::{Counts, bounds, matrix, run};

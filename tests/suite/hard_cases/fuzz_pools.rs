@@ -4,7 +4,9 @@ use std::cell::RefCell;
 
 use glam::DVec3;
 use proptest::prelude::*;
-use wgpu_shadows::{OmniLight, OmniShadowPool, PoolDescriptor, PoolLight, ShadowSlot};
+use wgpu_shadows::{
+    OmniLight, pool::OmniShadowPool, pool::PoolDescriptor, pool::PoolLight, pool::ShadowSlot,
+};
 
 use super::fuzz_values::{Counts, number, run};
 use crate::support::frames::{PoolFrame, RecordFrame};

@@ -5,11 +5,11 @@
 use glam::{DVec3, Mat4, Vec3};
 use wgpu::util::DeviceExt;
 use wgpu_shadows::{
-    Aabb, CasterPipeline, CasterPipelineDescriptor, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, MeshCaster, MeshCasterDescriptor, MeshIndices, OmniLight,
-    OmniShadow, OmniShadowDescriptor, PoolDescriptor, PoolLight, ShadowBindings,
-    ShadowBindingsDescriptor, ShadowCaster, ShadowSlot, SpotLight, SpotShadow,
-    SpotShadowDescriptor, SpotShadowPool,
+    Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowBindings,
+    ShadowBindingsDescriptor, ShadowCaster, SpotLight, SpotShadow, SpotShadowDescriptor,
+    caster::CasterPipelineDescriptor, caster::MeshCasterDescriptor, caster::MeshIndices,
+    pool::PoolDescriptor, pool::PoolLight, pool::ShadowSlot, pool::SpotShadowPool,
 };
 
 use super::table;

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, CasterPipeline, CasterPipelineDescriptor, DirectionalLight, ShadowCaster,
+    Aabb, CasterPipeline, DirectionalLight, ShadowCaster, caster::CasterPipelineDescriptor,
 };
 
 use super::stage::Sun;

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3, Mat4, Vec3};
 use wgpu_shadows::{
     Aabb, CascadeSplit, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    ShadowCaster, ShadowReport,
+    ShadowCaster, report::ShadowReport,
 };
 
 use crate::support::camera::Camera;

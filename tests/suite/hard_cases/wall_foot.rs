@@ -4,8 +4,8 @@ use std::f64::consts::SQRT_2;
 
 use glam::{DVec2, DVec3, Vec3};
 use wgpu_shadows::{
-    Aabb, Bias, CasterPipeline, CasterPipelineDescriptor, DirectionalShadowDescriptor, Filter,
-    ShadowCaster,
+    Aabb, Bias, CasterPipeline, DirectionalShadowDescriptor, Filter, ShadowCaster,
+    caster::CasterPipelineDescriptor,
 };
 
 use super::stage::{Sun, shining};
