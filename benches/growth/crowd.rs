@@ -149,11 +149,11 @@ impl ShadowCaster for BoxCaster {
         self.index_count / 3
     }
 
-    fn revision(&self) -> Revision {
+    fn revision(&self) -> Option<Revision> {
         if self.moves {
-            Revision::ALWAYS_CHANGING
+            None
         } else {
-            Revision::new(self.id, 0)
+            Some(Revision::new(self.id, 0))
         }
     }
 }

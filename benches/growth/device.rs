@@ -115,7 +115,7 @@ pub fn taps(stage: &Stage<'_>) {
     };
     lookups(&mut hardware);
     println!();
-    let mut filters = Filter::ALL.to_vec();
+    let mut filters = Filter::PLANAR.to_vec();
     filters.extend([
         Filter::DirectionStar { radius: 0.04 },
         Filter::Pcss { light_size: 0.1 },

@@ -223,7 +223,7 @@ impl ShadowCaster for Thing {
         }
     }
 
-    fn revision(&self) -> Revision {
+    fn revision(&self) -> Option<Revision> {
         self.mesh.revision()
     }
 }

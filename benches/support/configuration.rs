@@ -217,7 +217,7 @@ pub fn all(extent: Extent, map_sizes: &[u32]) -> Vec<Configuration> {
 }
 
 fn filters(extent: Extent) -> Vec<Filter> {
-    let mut filters = Filter::ALL.to_vec();
+    let mut filters = Filter::PLANAR.to_vec();
     filters.extend([
         Filter::default(),
         Filter::Tent5 { sharpness: 4.0 },

@@ -52,8 +52,8 @@ impl ShadowCaster for Building {
         true
     }
 
-    fn revision(&self) -> Revision {
+    fn revision(&self) -> Option<Revision> {
         // Buildings stay as they are.
-        Revision::new(u64::from(self.index), 0)
+        Some(Revision::new(u64::from(self.index), 0))
     }
 }

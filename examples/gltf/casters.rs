@@ -45,8 +45,8 @@ impl ShadowCaster for SceneCaster<'_> {
         self.draw.indices.len() as u32 / 3
     }
 
-    fn revision(&self) -> Revision {
-        Revision::new(self.draw.instance as u64, 0)
+    fn revision(&self) -> Option<Revision> {
+        Some(Revision::new(self.draw.instance as u64, 0))
     }
 }
 

@@ -10,7 +10,11 @@ use crate::{Aabb, ShadowView};
 /// alpha texture, pipeline. A move of the engine's `origin` alone needs no new version. A version that stays the same
 /// while the geometry changes leaves a stale shadow behind; a version that changes without need costs a depth pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Revision(Option<(Origin, u64, u64)>);
+pub struct Revision {
+    origin: Origin,
+    id: u64,
+    version: u64,
+}
 
 /// Tells who assigned the id of a revision, so that ids of different sources never collide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -21,26 +25,25 @@ enum Origin {
 }
 
 impl Revision {
-    /// Never equals the revision of an earlier draw: a view with such a caster is rendered in every frame. This is the
-    /// default of [`ShadowCaster::revision`]; it is always correct and never saves a pass.
-    pub const ALWAYS_CHANGING: Self = Self(None);
-
     /// Makes a revision from an `id`, which distinguishes this caster from all others of the light, and a `version`,
     /// which counts its changes. Both may be any number. No [`MeshCaster`](crate::MeshCaster) has the revision of an
     /// engine's own caster, whatever the ids. Two casters that share an id and a version are taken for each other, and
     /// leave a stale shadow where one replaces the other.
     pub const fn new(id: u64, version: u64) -> Self {
-        Self(Some((Origin::Engine, id, version)))
+        Self {
+            origin: Origin::Engine,
+            id,
+            version,
+        }
     }
 
     /// Returns the revision of a [`MeshCaster`](crate::MeshCaster).
     pub(crate) const fn of_mesh(id: u64, version: u64) -> Self {
-        Self(Some((Origin::Mesh, id, version)))
-    }
-
-    /// Returns whether a map drawn under this revision may be kept.
-    pub(crate) const fn is_stable(&self) -> bool {
-        self.0.is_some()
+        Self {
+            origin: Origin::Mesh,
+            id,
+            version,
+        }
     }
 }
 
@@ -115,9 +118,10 @@ pub trait ShadowCaster {
         0
     }
 
-    /// Returns the identity and version of what would be drawn. The default returns [`Revision::ALWAYS_CHANGING`], so
-    /// that a kept map is never stale.
-    fn revision(&self) -> Revision {
-        Revision::ALWAYS_CHANGING
+    /// Returns the identity and version of what would be drawn, or `None` for a caster that may look different in every
+    /// frame: a view with such a caster is rendered in every frame. The default returns `None`, which is always correct
+    /// and never saves a pass.
+    fn revision(&self) -> Option<Revision> {
+        None
     }
 }

@@ -6,7 +6,7 @@ use crate::{Aabb, ShadowError, check};
 /// Holds what the methods of a caster returned in a frame, apart from its bounds.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CasterFacts {
-    pub revision: Revision,
+    pub revision: Option<Revision>,
     pub triangles: u32,
     pub same_in_every_view: bool,
     pub keeps_pass_state: bool,

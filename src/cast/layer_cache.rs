@@ -61,7 +61,7 @@ impl Plan {
 #[derive(Clone, Copy, Debug)]
 struct Drawn {
     index: u32,
-    revision: Revision,
+    revision: Option<Revision>,
     /// Counts the draws for which it had not changed.
     age: u32,
 }
@@ -126,7 +126,7 @@ impl LayerCache {
             && self.drawn.len() == draws.casters.len()
             && now(draws, casters)
                 .zip(&self.drawn)
-                .all(|(now, was)| now.revision == was.revision && now.revision.is_stable())
+                .all(|(now, was)| now.revision == was.revision && now.revision.is_some())
     }
 
     /// Returns what `draws` needs. `can_copy` is false where layers cannot be copied.
@@ -249,7 +249,7 @@ impl StaticCasterCache {
 
 impl Drawn {
     fn is_same(&self, other: &Self) -> bool {
-        self.index == other.index && self.revision == other.revision && self.revision.is_stable()
+        self.index == other.index && self.revision == other.revision && self.revision.is_some()
     }
 }
 

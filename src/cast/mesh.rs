@@ -192,8 +192,8 @@ impl ShadowCaster for MeshCaster {
         self.pipeline.triangles_of(corners as u32)
     }
 
-    fn revision(&self) -> Revision {
-        Revision::of_mesh(self.id, self.version)
+    fn revision(&self) -> Option<Revision> {
+        Some(Revision::of_mesh(self.id, self.version))
     }
 }
 

@@ -12,6 +12,7 @@ use crate::fit::visible::SeenBounds;
 
 /// Reports which slice of the camera's view a cascade covers, and how finely.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SliceReport {
     /// Is the depth along the view, in world units, at which the cascade's slice begins. For the first cascade that is
     /// the nearest visible receiver, or the camera's near plane under

@@ -97,7 +97,7 @@ impl Default for Filter {
 
 impl Filter {
     /// Every filter that suits all kinds of light, the sharpened ones with a sharpness of 1.
-    pub const ALL: [Self; 7] = [
+    pub const PLANAR: &'static [Self] = &[
         Self::Nearest,
         Self::Hardware,
         Self::Box,

@@ -20,6 +20,7 @@ pub enum ViewStatus {
 
 /// One view of a light in one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ViewReport {
     /// Layer of the depth texture.
     pub layer: u32,
@@ -66,6 +67,7 @@ impl ViewReport {
 
 /// What a light did in a frame.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct ShadowReport {
     /// One entry per view, in the order of the frame's lights and of the layers of each.
     pub views: Vec<ViewReport>,
@@ -100,5 +102,28 @@ impl ShadowReport {
         self.views
             .iter()
             .filter(|view| view.status == ViewStatus::Drawn)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn any_numbers_are_counted_without_a_panic() {
+        let view = |casters, copied| ViewReport {
+            status: ViewStatus::Drawn,
+            casters,
+            copied,
+            triangles: u64::MAX,
+            ..ViewReport::empty(0, 0)
+        };
+        let report = ShadowReport {
+            views: vec![view(0, 1), view(u32::MAX, 0), view(7, 2)],
+            passes: 3,
+            bytes_held: 0,
+        };
+        assert_eq!(report.draws(), u32::MAX);
+        assert_eq!(report.triangles(), u64::MAX);
     }
 }

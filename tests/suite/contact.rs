@@ -178,7 +178,7 @@ fn a_plate_thicker_than_the_reported_gap_always_casts() {
     let few = [(0.0, 20.0), (30.0, 0.0), (60.0, 45.0), (89.0, 45.0)];
     let mut failures = Vec::new();
     let mut looks = 0;
-    for filter in Filter::ALL.into_iter().chain([Filter::default()]) {
+    for filter in Filter::PLANAR.iter().copied().chain([Filter::default()]) {
         for bias in BIASES {
             for setting in SETTINGS {
                 let angles = if setting.range > 0.0 {
@@ -213,7 +213,7 @@ fn a_plate_thicker_than_the_reported_gap_always_casts() {
 #[test]
 fn a_plate_of_half_the_reported_gap_lets_light_through_at_the_worst_angle() {
     let mut failures = Vec::new();
-    for filter in Filter::ALL {
+    for filter in Filter::PLANAR.iter().copied() {
         for bias in [Bias::Auto, Bias::NormalOffset] {
             for (name, brightest) in brightest((filter, bias), PLAIN, 0.5, &[(87.0, 45.0)]) {
                 if brightest <= 1.0 / 255.0 {

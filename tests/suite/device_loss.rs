@@ -294,22 +294,20 @@ fn a_lost_device_draws_nothing() {
     assert_eq!(status(&caster), Err(error));
 }
 
-/// A light of another device is refused in the device's own words, and the frame of a light is recorded on its own device only.
+/// A light of another device is refused before anything is made or drawn, and frames are recorded on the light's own.
 #[test]
 fn a_light_of_another_device_is_refused() {
     let [here, there] = Gpu::two();
     let mut all = Everything::new(&here);
     let error = bindings(&there, &all.sun).expect_err("no bindings");
-    let BindingsError::Device(DeviceError {
-        object,
-        refusal: DeviceRefusal::Refused(message),
-    }) = &error
-    else {
-        panic!("{error:?}");
+    let wanted = BindingsError::OtherDevice {
+        name: "sun".to_owned(),
     };
-    assert_eq!(*object, "the bind group of the lights");
-    let text = format!("the device did not make {object}: {message}");
-    assert_eq!(error.to_string(), text);
+    assert_eq!(error, wanted);
+    assert_eq!(
+        error.to_string(),
+        "ShadowBindingsDescriptor::lights: \"sun\" must have been made on the device that is passed"
+    );
     let view = DebugView::new(&there.device, FORMAT).expect("a debug view");
     let target = color_target(&there, 4);
     let mut encoder = there.encoder();
@@ -317,16 +315,7 @@ fn a_light_of_another_device_is_refused() {
         let mut pass = color_pass(&mut encoder, &target);
         let picture = DebugImage::Layer(0);
         let error = view.draw(&mut pass, all.sun.maps(), picture);
-        assert!(
-            matches!(
-                error,
-                Err(DebugViewError::Device(DeviceError {
-                    refusal: DeviceRefusal::Refused(_),
-                    ..
-                }))
-            ),
-            "{error:?}"
-        );
+        assert_eq!(error, Err(DebugViewError::OtherDevice));
     }
     there.submit(encoder);
     // Frames are recorded on the light's own device, whatever else there is.

@@ -15,7 +15,7 @@ const BIASES: [Bias; 3] = [
     },
 ];
 
-/// Filters that every kind of light takes beside [`Filter::ALL`].
+/// Filters that every kind of light takes beside [`Filter::PLANAR`].
 const SOFT: [Filter; 2] = [
     Filter::Pcss { light_size: 0.01 },
     Filter::PcssRotated { light_size: 0.01 },
@@ -36,7 +36,7 @@ struct Named {
 /// A light of a kind for every filter and bias that it takes. Maps are one texel: only the WGSL is of interest.
 fn every_way(kind: Kind) -> Vec<Named> {
     let directions: &[Filter] = if kind.has_cube() { &DIRECTIONS } else { &[] };
-    let filters = [&Filter::ALL[..], &SOFT, directions].concat();
+    let filters = [&Filter::PLANAR[..], &SOFT, directions].concat();
     filters
         .iter()
         .flat_map(|filter| BIASES.map(|bias| (*filter, bias)))

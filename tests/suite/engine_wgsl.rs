@@ -139,8 +139,8 @@ impl ShadowCaster for Card {
         pass.draw(0..4, 0..1);
     }
 
-    fn revision(&self) -> Revision {
-        Revision::new(u64::MAX, self.version)
+    fn revision(&self) -> Option<Revision> {
+        Some(Revision::new(u64::MAX, self.version))
     }
 }
 

@@ -45,8 +45,8 @@ impl ShadowCaster for Rebased {
         self.mesh.triangles()
     }
 
-    fn revision(&self) -> Revision {
-        self.revision
+    fn revision(&self) -> Option<Revision> {
+        Some(self.revision)
     }
 }
 

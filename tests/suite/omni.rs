@@ -139,8 +139,9 @@ fn planar_samplings() -> impl Iterator<Item = (Filter, Bias)> {
         Filter::Pcss { light_size: 0.05 },
         Filter::Tent7 { sharpness: 2.0 },
     ];
-    Filter::ALL
-        .into_iter()
+    Filter::PLANAR
+        .iter()
+        .copied()
         .chain(more)
         .flat_map(|filter| [Bias::Auto, Bias::NormalOffset].map(|bias| (filter, bias)))
 }

@@ -83,8 +83,9 @@ impl Hall {
 
 fn halls(gpu: &Gpu) -> Vec<Hall> {
     let biases = [Bias::Auto, Bias::NormalOffset];
-    Filter::ALL
-        .into_iter()
+    Filter::PLANAR
+        .iter()
+        .copied()
         .flat_map(|filter| biases.map(|bias| Hall::new(gpu, filter, bias)))
         .collect()
 }
@@ -127,7 +128,10 @@ fn receivers_around_the_map_are_lit() {
 #[test]
 fn the_border_is_where_the_kernel_ends() {
     const STEPS: usize = 4000;
-    for (hall, filter) in halls(gpu()).iter().zip(doubled(Filter::ALL)) {
+    for (hall, filter) in halls(gpu())
+        .iter()
+        .zip(doubled(Filter::PLANAR.iter().copied()))
+    {
         let view = hall.shadow.maps().views().next().expect("a view");
         let uniform = hall.shadow.maps().view_uniforms()[0];
         let from_side = |texel: DVec2| {

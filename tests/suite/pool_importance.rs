@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, Revision, ShadowCaster, SpotLight, pool::PoolDescriptor, pool::PoolLight,
+    Aabb, ShadowCaster, SpotLight, pool::PoolDescriptor, pool::PoolLight,
     pool::SpotShadowPool, report::ViewStatus,
 };
 
@@ -54,7 +54,7 @@ fn drawn(importances: &[f32], max_views: u32, frames: usize) -> Vec<Vec<usize>> 
         let low = place - Vec3::new(0.2, 1.1, 0.2);
         let slab = Mesh::cuboid(low, low + Vec3::new(0.4, 0.1, 0.4));
         let mut slab = Watched::new(slab.caster(gpu, &pipeline, Mat4::IDENTITY));
-        slab.revision = Some(Revision::ALWAYS_CHANGING);
+        slab.revision = Some(None);
         slabs.push(slab);
         let floor = place.with_y(0.0);
         floors.push(Aabb::new(floor - Vec3::new(1.0, 0.1, 1.0), floor + 1.0));

@@ -47,7 +47,7 @@ impl ShadowCaster for Flagged {
         self.receives
     }
 
-    fn revision(&self) -> Revision {
+    fn revision(&self) -> Option<Revision> {
         self.mesh.revision()
     }
 }

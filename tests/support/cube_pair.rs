@@ -45,7 +45,7 @@ impl ShadowCaster for Told {
         self.same_in_every_view
     }
 
-    fn revision(&self) -> Revision {
+    fn revision(&self) -> Option<Revision> {
         self.mesh.revision()
     }
 }

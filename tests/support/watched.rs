@@ -7,7 +7,7 @@ use wgpu_shadows::{Aabb, CasterPipeline, MeshCaster, Revision, ShadowCaster, Sha
 /// A mesh that counts how often it is drawn, with a revision and bounds of the test's choice.
 pub struct Watched {
     pub mesh: MeshCaster,
-    pub revision: Option<Revision>,
+    pub revision: Option<Option<Revision>>,
     pub bounds: Option<Aabb>,
     pub draws: Cell<u32>,
 }
@@ -44,7 +44,7 @@ impl ShadowCaster for Watched {
         self.mesh.draw(pass, view);
     }
 
-    fn revision(&self) -> Revision {
+    fn revision(&self) -> Option<Revision> {
         self.revision.unwrap_or(self.mesh.revision())
     }
 }

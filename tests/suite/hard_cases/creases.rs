@@ -107,8 +107,9 @@ fn creases(signs: f64) -> Vec<Crease> {
 }
 
 fn samplings() -> Vec<(Filter, Bias)> {
-    Filter::ALL
-        .into_iter()
+    Filter::PLANAR
+        .iter()
+        .copied()
         .chain([Filter::default()])
         .flat_map(|filter| [(filter, Bias::Auto), (filter, Bias::NormalOffset)])
         .collect()

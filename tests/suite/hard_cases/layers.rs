@@ -18,7 +18,7 @@ use crate::support::scene::Mesh;
 fn nothing_leaks_through_a_stack() {
     let mut asked = 0;
     let mut random = Random::new(13);
-    for filter in Filter::ALL.into_iter().chain([Filter::default()]) {
+    for filter in Filter::PLANAR.iter().copied().chain([Filter::default()]) {
         for bias in [Bias::Auto, Bias::NormalOffset] {
             let mut sun = Sun::new(&DirectionalShadowDescriptor {
                 map_size: 256,

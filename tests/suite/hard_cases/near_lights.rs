@@ -115,7 +115,7 @@ fn lights_almost_on_a_surface() {
         })
         .collect();
     let (mut failures, mut asked) = (Vec::new(), 0);
-    for filter in Filter::ALL.into_iter().chain([Filter::default()]) {
+    for filter in Filter::PLANAR.iter().copied().chain([Filter::default()]) {
         for bias in [Bias::Auto, Bias::NormalOffset] {
             let mut both = Both::new(filter, bias);
             for height in HEIGHTS {

@@ -131,7 +131,7 @@ fn shadows_begin_at_the_foot_of_a_wall() {
     let mut worst = DVec2::ZERO;
     let mut looks = 0;
     for wall in [Wall::Sheet, Wall::BackOfSolid] {
-        for filter in Filter::ALL.into_iter().chain([Filter::default()]) {
+        for filter in Filter::PLANAR.iter().copied().chain([Filter::default()]) {
             for bias in [Bias::Auto, Bias::NormalOffset] {
                 let mut sun = Sun::new(&DirectionalShadowDescriptor {
                     map_size: 256,
