@@ -214,14 +214,28 @@ pub enum CasterError {
     NoDepthFormat,
     /// The strip index format goes with strip topologies and with no others.
     #[error(
-        "CasterPipelineDescriptor::strip_index_format goes with strip topologies only, got {topology:?}"
+        "CasterPipelineDescriptor::primitive.strip_index_format goes with strip topologies only, got {topology:?}"
     )]
     StripIndexFormat {
         /// The topology asked for.
         topology: wgpu::PrimitiveTopology,
     },
+    /// Outlines, depths that are not clipped and conservative rasterization give no shadow map.
+    #[error(
+        "CasterPipelineDescriptor::primitive must fill polygons, clip depths and not be conservative, got {polygon_mode:?}, unclipped_depth {unclipped_depth}, conservative {conservative}"
+    )]
+    Primitive {
+        /// The value given.
+        unclipped_depth: bool,
+        /// The value given.
+        polygon_mode: wgpu::PolygonMode,
+        /// The value given.
+        conservative: bool,
+    },
     /// Lines and points cast no shadow that a surface could receive without bias tricks; only triangles are accepted.
-    #[error("CasterPipelineDescriptor::topology must be a triangle topology, got {topology:?}")]
+    #[error(
+        "CasterPipelineDescriptor::primitive.topology must be a triangle topology, got {topology:?}"
+    )]
     Topology {
         /// The topology asked for.
         topology: wgpu::PrimitiveTopology,

@@ -66,7 +66,10 @@ pub fn scene_casters<'a>(
     };
     let closed = CasterPipelineDescriptor {
         label: Some("closed caster"),
-        cull: Some(wgpu::Face::Back),
+        primitive: wgpu::PrimitiveState {
+            cull_mode: Some(wgpu::Face::Back),
+            ..Default::default()
+        },
         ..solid
     };
     let masked = CasterPipelineDescriptor {

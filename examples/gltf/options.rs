@@ -61,14 +61,11 @@ pub struct Options {
 
 impl Options {
     /// Where the cascades end; `--splits` is for as many as it says.
-    pub fn split(&self) -> CascadeSplit {
+    pub fn split(&self) -> CascadeSplit<'_> {
         if self.splits.is_empty() {
             return CascadeSplit::Logarithmic;
         }
-        let end = |index| self.splits.get(index).copied().unwrap_or(f32::INFINITY);
-        CascadeSplit::Explicit {
-            ends: std::array::from_fn(end),
-        }
+        CascadeSplit::Explicit { ends: &self.splits }
     }
 
     /// The filter of directional lights.

@@ -96,7 +96,10 @@ impl Scene {
                     position: PositionAttribute::float32x3(size_of::<Vertex>() as u64),
                     model: ModelTransform::INSTANCE_MATRIX,
                 },
-                cull,
+                primitive: wgpu::PrimitiveState {
+                    cull_mode: cull,
+                    ..Default::default()
+                },
                 ..Default::default()
             },
         )?;

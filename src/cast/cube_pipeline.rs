@@ -17,10 +17,7 @@ const CUBE_FORMAT: DepthFormat = DepthFormat::Float32;
 pub(crate) struct CubePipelines {
     position: PositionAttribute,
     model: ModelTransform,
-    cull: Option<wgpu::Face>,
-    front_face: wgpu::FrontFace,
-    topology: wgpu::PrimitiveTopology,
-    strip_index_format: Option<wgpu::IndexFormat>,
+    primitive: wgpu::PrimitiveState,
     /// Holds `None` where the device refused to make them.
     made: OnceLock<Option<BothWindings>>,
 }
@@ -34,10 +31,7 @@ impl CubePipelines {
         Some(Self {
             position,
             model,
-            cull: descriptor.cull,
-            front_face: descriptor.front_face,
-            topology: descriptor.topology,
-            strip_index_format: descriptor.strip_index_format,
+            primitive: descriptor.primitive,
             made: OnceLock::new(),
         })
     }
@@ -62,10 +56,7 @@ impl CubePipelines {
                 position: self.position,
                 model: self.model,
             },
-            cull: self.cull,
-            front_face: self.front_face,
-            topology: self.topology,
-            strip_index_format: self.strip_index_format,
+            primitive: self.primitive,
             depth_formats: &[CUBE_FORMAT],
         };
         let mut by_format =

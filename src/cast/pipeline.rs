@@ -7,7 +7,7 @@ use crate::cast::cube_pipeline::CubePipelines;
 use crate::cast::pipeline_build::{ByFormat, create_pipelines};
 use crate::cast::pipeline_descriptor::{
     CasterPipelineDescriptor, CasterVertex, ModelTransform, PositionAttribute, check_model,
-    check_position, check_topology,
+    check_position, check_primitive,
 };
 use crate::cast::pipeline_reads::{VertexReads, beyond_a_mesh};
 use crate::error::CasterError;
@@ -33,8 +33,7 @@ struct Variants {
     /// Names what the pipeline takes that a ready-made mesh does not set.
     beyond_a_mesh: Option<String>,
     cube: Option<CubePipelines>,
-    topology: wgpu::PrimitiveTopology,
-    strip_index_format: Option<wgpu::IndexFormat>,
+    primitive: wgpu::PrimitiveState,
 }
 
 impl PartialEq for CasterPipeline {
@@ -54,7 +53,7 @@ impl CasterPipeline {
         device: &wgpu::Device,
         descriptor: &CasterPipelineDescriptor<'_>,
     ) -> Result<Self, CasterError> {
-        check_topology(descriptor)?;
+        check_primitive(&descriptor.primitive)?;
         if descriptor.depth_formats.is_empty() {
             return Err(CasterError::NoDepthFormat);
         }
@@ -82,8 +81,7 @@ impl CasterPipeline {
                 vertices: VertexReads::of(&descriptor.vertex),
                 beyond_a_mesh: beyond_a_mesh(&descriptor.vertex),
                 cube: CubePipelines::of(descriptor),
-                topology: descriptor.topology,
-                strip_index_format: descriptor.strip_index_format,
+                primitive: descriptor.primitive,
             }),
             mirrored: false,
         })
@@ -127,7 +125,7 @@ impl CasterPipeline {
 
     /// Returns the number of triangles that `corners` vertices or indices make; for a strip, restarts are not counted.
     pub(crate) fn triangles_of(&self, corners: u32) -> u32 {
-        match self.variants.topology {
+        match self.variants.primitive.topology {
             wgpu::PrimitiveTopology::TriangleStrip => corners.saturating_sub(2),
             _ => corners / 3,
         }
@@ -135,8 +133,8 @@ impl CasterPipeline {
 
     /// Returns, for strips, the format that indices must have. Returns `None` for lists, which accept any format.
     pub(crate) fn strip_index_format(&self) -> Option<Option<wgpu::IndexFormat>> {
-        let is_strip = self.variants.topology == wgpu::PrimitiveTopology::TriangleStrip;
-        is_strip.then_some(self.variants.strip_index_format)
+        let is_strip = self.variants.primitive.topology == wgpu::PrimitiveTopology::TriangleStrip;
+        is_strip.then_some(self.variants.primitive.strip_index_format)
     }
 
     /// Returns the bytes that vertex buffer 0 must have so that `vertices` vertices can be drawn in order. If

@@ -149,11 +149,8 @@ fn create_by_format(
                 buffers: stages.buffers,
             },
             primitive: wgpu::PrimitiveState {
-                topology: descriptor.topology,
-                strip_index_format: descriptor.strip_index_format,
                 front_face,
-                cull_mode: descriptor.cull,
-                ..Default::default()
+                ..descriptor.primitive
             },
             depth_stencil: Some(wgpu::DepthStencilState {
                 format: format.texture_format(),
@@ -174,8 +171,11 @@ fn create_by_format(
         })
     };
     let both = |format| {
-        let described = create(format, descriptor.front_face);
-        let mirrored = match (descriptor.cull, descriptor.front_face) {
+        let described = create(format, descriptor.primitive.front_face);
+        let mirrored = match (
+            descriptor.primitive.cull_mode,
+            descriptor.primitive.front_face,
+        ) {
             (None, _) => described.clone(),
             (Some(_), wgpu::FrontFace::Ccw) => create(format, wgpu::FrontFace::Cw),
             (Some(_), wgpu::FrontFace::Cw) => create(format, wgpu::FrontFace::Ccw),

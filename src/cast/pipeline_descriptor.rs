@@ -89,21 +89,17 @@ pub struct CasterPipelineDescriptor<'a> {
     pub label: wgpu::Label<'a>,
     /// Selects the vertex stage. The default reads tightly packed `Float32x3` positions and one instance matrix.
     pub vertex: CasterVertex<'a>,
-    /// Selects which faces, as seen from the light, are left out of the map. `None` (the default) suits every mesh,
-    /// open sheets included. `Some(Face::Front)` is the classic cure for peter-panning: it needs closed solids, and
-    /// light leaks where they touch the ground exactly. `Some(Face::Back)` takes a third off the cost of closed solids
-    /// and changes nothing of their shadows; [`is_closed_solid`](crate::caster::is_closed_solid) recognises them. A sheet whose
-    /// face toward the light is left out casts no shadow.
-    pub cull: Option<wgpu::Face>,
-    /// Is the winding of front faces: counter-clockwise by default. It is the winding in the engine's space unless the
-    /// model transform mirrors; [`CasterPipeline::mirrored`](crate::CasterPipeline::mirrored) serves such transforms.
-    /// With culling, a wrong winding leaves out the opposite faces.
-    pub front_face: wgpu::FrontFace,
-    /// Is a triangle list (the default) or a triangle strip; any other topology is an error.
-    pub topology: wgpu::PrimitiveTopology,
-    /// Is the index format of strips, for primitive restart; `None` (the default) otherwise. A format with a triangle
-    /// list is an error.
-    pub strip_index_format: Option<wgpu::IndexFormat>,
+    /// Topology, winding and culling, as wgpu has them.
+    ///
+    /// The topology is a triangle list or strip; a strip that is drawn through indices needs their format in
+    /// `strip_index_format`, and a list must not have one. Front faces are those that `front_face` says in the engine's
+    /// space, unless the model transform mirrors. `cull_mode` names the faces, as seen from the light, that are left out of
+    /// the map: `None` (the default) suits every mesh, open sheets included. `Some(Face::Front)` is the classic cure for
+    /// peter-panning: it needs closed solids, and light leaks where they touch the ground exactly. `Some(Face::Back)` takes
+    /// a third off the cost of closed solids and changes nothing of their shadows;
+    /// [`is_closed_solid`](crate::caster::is_closed_solid) tells them. Polygons are filled, depths are clipped and
+    /// rasterization is not conservative: a map of outlines, or of depths beyond its range, is no shadow map.
+    pub primitive: wgpu::PrimitiveState,
     /// Lists the formats of the maps that it will be drawn into; not empty. The default is `Float32` alone; add
     /// `Unorm16` where a light has such a map. Each format is one more wgpu pipeline. A light whose format is missing
     /// returns [`ShadowError::CasterFormat`](crate::ShadowError::CasterFormat) when it is recorded.
@@ -119,10 +115,15 @@ impl CasterPipelineDescriptor<'_> {
                 position: PositionAttribute::float32x3(12),
                 model: ModelTransform::INSTANCE_MATRIX,
             },
-            cull: None,
-            front_face: wgpu::FrontFace::Ccw,
-            topology: wgpu::PrimitiveTopology::TriangleList,
-            strip_index_format: None,
+            primitive: wgpu::PrimitiveState {
+                topology: wgpu::PrimitiveTopology::TriangleList,
+                strip_index_format: None,
+                front_face: wgpu::FrontFace::Ccw,
+                cull_mode: None,
+                unclipped_depth: false,
+                polygon_mode: wgpu::PolygonMode::Fill,
+                conservative: false,
+            },
             depth_formats: &[DepthFormat::Float32],
         }
     }
@@ -134,14 +135,27 @@ impl Default for CasterPipelineDescriptor<'_> {
     }
 }
 
-pub(crate) fn check_topology(descriptor: &CasterPipelineDescriptor<'_>) -> Result<(), CasterError> {
-    let topology = descriptor.topology;
+pub(crate) fn check_primitive(primitive: &wgpu::PrimitiveState) -> Result<(), CasterError> {
+    let topology = primitive.topology;
     let strip = topology == wgpu::PrimitiveTopology::TriangleStrip;
     if !strip && topology != wgpu::PrimitiveTopology::TriangleList {
         return Err(CasterError::Topology { topology });
     }
-    if descriptor.strip_index_format.is_some() && !strip {
+    if primitive.strip_index_format.is_some() && !strip {
         return Err(CasterError::StripIndexFormat { topology });
+    }
+    let plain = wgpu::PrimitiveState {
+        unclipped_depth: false,
+        polygon_mode: wgpu::PolygonMode::Fill,
+        conservative: false,
+        ..*primitive
+    };
+    if *primitive != plain {
+        return Err(CasterError::Primitive {
+            unclipped_depth: primitive.unclipped_depth,
+            polygon_mode: primitive.polygon_mode,
+            conservative: primitive.conservative,
+        });
     }
     Ok(())
 }

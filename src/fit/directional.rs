@@ -9,13 +9,10 @@ use crate::fit::footprint::{FootprintScratch, Slice, SliceReport};
 use crate::fit::map_rect::{DepthRange, LightSpaceBounds, MapRect, MapRectRequest};
 use crate::fit::region::HalfSpaces;
 use crate::fit::spacing::Spacing;
-use crate::fit::split::CascadeSplit;
+use crate::fit::split::{MAX_CASCADES, SplitRule};
 use crate::fit::stability::Stability;
 use crate::fit::visible::{self, Seen, SeenBounds};
 use crate::{Aabb, ShadowError};
-
-/// Is the largest number of cascades that one light may have.
-pub(crate) const MAX_CASCADES: usize = 8;
 
 /// Selects the receivers that count.
 #[derive(Clone, Copy)]
@@ -45,7 +42,7 @@ pub(crate) struct FitLimits {
     pub map_size: u32,
     pub margin_texels: u32,
     pub cascades: usize,
-    pub split: CascadeSplit,
+    pub split: SplitRule,
     pub stability: Stability,
 }
 

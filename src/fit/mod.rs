@@ -41,15 +41,14 @@ pub use axes::LightAxes;
 pub(crate) use axes::LightBox;
 pub(crate) use camera::CameraFrustum;
 pub use camera::CameraView;
-pub(crate) use directional::{
-    DirectionalFit, FitInput, FitLimits, FitScratch, MAX_CASCADES, Region,
-};
+pub(crate) use directional::{DirectionalFit, FitInput, FitLimits, FitScratch, Region};
 pub use footprint::SliceReport;
 pub(crate) use local::{LocalFit, MAX_LOCAL_VIEWS};
 pub(crate) use local_input::LocalInput;
 pub(crate) use reached::Reached;
 pub(crate) use region::HalfSpaces;
 pub use split::CascadeSplit;
+pub(crate) use split::MAX_CASCADES;
 pub use stability::Stability;
 pub use view::ShadowView;
 pub(crate) use view::ViewPlacement;

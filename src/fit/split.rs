@@ -3,6 +3,9 @@
 use crate::ShadowError;
 use crate::check::in_range;
 
+/// The largest number of cascades that one light may have.
+pub(crate) const MAX_CASCADES: usize = 8;
+
 /// Selects how the covered depth is divided among the cascades of a directional light.
 /// [`DirectionalShadowDescriptor`](crate::DirectionalShadowDescriptor) defaults to `Logarithmic`.
 ///
@@ -15,7 +18,7 @@ use crate::check::in_range;
 /// Sources: Engel 2006 (*Cascaded Shadow Maps*), Zhang et al. 2006 (*Parallel-Split Shadow Maps*, GPU Gems 3 ch. 10).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum CascadeSplit {
+pub enum CascadeSplit<'a> {
     /// Divides into equal depths, which gives too few texels per pixel near the camera and more than needed far from
     /// it.
     Uniform,
@@ -31,21 +34,72 @@ pub enum CascadeSplit {
     /// Divides at given depths, for scenes with a known break, such as a cockpit before a landscape. A cascade that
     /// ends before the nearest visible receiver stays empty.
     Explicit {
-        /// Holds the depths along the view, in world units, finite and growing, at which all cascades but the last end.
-        /// As many are read as there are cascades but one; the rest is ignored.
-        ends: [f32; 7],
+        /// Holds the depths along the view, in world units, finite and growing, at which all cascades but the last end:
+        /// one fewer than there are cascades.
+        ends: &'a [f32],
     },
 }
 
-impl CascadeSplit {
+/// The same with its numbers checked, and its own.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum SplitRule {
+    /// A share of the way from uniform to logarithmic.
+    Practical { lambda: f64 },
+    /// The ends of all cascades but the last.
+    Explicit { ends: [f64; MAX_CASCADES - 1] },
+}
+
+impl CascadeSplit<'_> {
+    /// Checks the numbers for a light of `cascades` cascades.
+    pub(crate) fn checked(
+        self,
+        field: &'static str,
+        cascades: u32,
+    ) -> Result<SplitRule, ShadowError> {
+        let lambda = match self {
+            Self::Uniform => 0.0,
+            Self::Logarithmic => 1.0,
+            Self::Practical { lambda } => lambda,
+            Self::Explicit { ends } => {
+                let finite = ends.iter().all(|end| end.is_finite());
+                let growing = ends.is_sorted_by(|before, after| before < after);
+                in_range(
+                    field,
+                    "of finite ends that grow, one fewer than there are cascades",
+                    finite && growing && ends.len() + 1 == cascades as usize,
+                    format_args!("{ends:?}"),
+                )?;
+                let mut all = [0.0; MAX_CASCADES - 1];
+                for (own, end) in all.iter_mut().zip(ends) {
+                    *own = f64::from(*end);
+                }
+                return Ok(SplitRule::Explicit { ends: all });
+            }
+        };
+        in_range(
+            field,
+            "of a lambda in 0..=1",
+            (0.0..=1.0).contains(&lambda),
+            lambda,
+        )?;
+        let lambda = f64::from(lambda);
+        Ok(SplitRule::Practical { lambda })
+    }
+}
+
+impl SplitRule {
     /// Returns the depth at which cascade `index` of `count` begins (`index == count` is the far end).
-    pub(crate) fn depth(self, index: usize, count: usize, near: f64, far: f64) -> f64 {
+    pub fn depth(self, index: usize, count: usize, near: f64, far: f64) -> f64 {
         if index == 0 {
             return near;
         }
         if index == count {
             return far;
         }
+        let lambda = match self {
+            Self::Explicit { ends } => return ends[index - 1].max(near).min(far),
+            Self::Practical { lambda } => lambda,
+        };
         let share = index as f64 / count as f64;
         let uniform = near + (far - near) * share;
         // Equal ratios need a positive start; depths of an orthographic camera may begin behind it.
@@ -54,38 +108,13 @@ impl CascadeSplit {
         } else {
             uniform
         };
-        match self {
-            Self::Uniform => uniform,
-            Self::Logarithmic => logarithmic,
-            Self::Practical { lambda } => {
-                let lambda = f64::from(lambda);
-                lambda * logarithmic + (1.0 - lambda) * uniform
-            }
-            Self::Explicit { ends } => f64::from(ends[index - 1]).max(near).min(far),
+        // The ends of the scale are taken as they are, so that no rounding of the other enters.
+        if lambda == 1.0 {
+            logarithmic
+        } else if lambda == 0.0 {
+            uniform
+        } else {
+            lambda * logarithmic + (1.0 - lambda) * uniform
         }
-    }
-
-    /// Checks the numbers for a light of `cascades` cascades.
-    pub(crate) fn check(self, field: &'static str, cascades: u32) -> Result<(), ShadowError> {
-        let lambda = match self {
-            Self::Practical { lambda } => lambda,
-            Self::Uniform | Self::Logarithmic => 1.0,
-            Self::Explicit { ends } => {
-                let ends = &ends[..cascades as usize - 1];
-                let finite = ends.iter().all(|end| end.is_finite());
-                return in_range(
-                    field,
-                    "of finite ends that grow",
-                    finite && ends.is_sorted_by(|before, after| before < after),
-                    format_args!("{ends:?}"),
-                );
-            }
-        };
-        in_range(
-            field,
-            "of a lambda in 0..=1",
-            (0.0..=1.0).contains(&lambda),
-            lambda,
-        )
     }
 }

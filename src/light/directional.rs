@@ -27,7 +27,7 @@ pub struct DirectionalShadowDescriptor<'a> {
     /// Cascades, 1..=8, and no more than the device's `max_texture_array_layers`. Default 1, which suits a scene as deep as it is wide; a view to the horizon wants 3 or 4.
     pub cascades: u32,
     /// Where one cascade ends and the next begins. Default logarithmic.
-    pub split: CascadeSplit,
+    pub split: CascadeSplit<'a>,
     /// How a map is looked up.
     pub filter: Filter,
     /// How receivers are kept from shadowing themselves.
@@ -135,9 +135,9 @@ impl DirectionalShadow {
             (1..=MAX_CASCADES as u32).contains(&descriptor.cascades),
             descriptor.cascades,
         )?;
-        descriptor
+        let split = descriptor
             .split
-            .check("DirectionalShadowDescriptor::split", descriptor.cascades)?;
+            .checked("DirectionalShadowDescriptor::split", descriptor.cascades)?;
         check::in_range(
             "DirectionalShadowDescriptor::blend",
             "in 0..=0.5",
@@ -182,7 +182,7 @@ impl DirectionalShadow {
                 map_size: descriptor.map_size,
                 margin_texels: sampling.margin_texels(),
                 cascades: descriptor.cascades as usize,
-                split: descriptor.split,
+                split,
                 stability: descriptor.stability,
             },
             fit: DirectionalFit::default(),

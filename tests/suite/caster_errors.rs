@@ -105,16 +105,23 @@ fn topologies_that_are_no_triangles() {
     use wgpu::PrimitiveTopology as T;
     for topology in [T::PointList, T::LineList, T::LineStrip] {
         let error = pipeline(&CasterPipelineDescriptor {
-            topology,
+            primitive: wgpu::PrimitiveState {
+                topology,
+                ..Default::default()
+            },
             ..CasterPipelineDescriptor::new()
         });
         let error = error.expect_err("a topology");
         assert_eq!(error, CasterError::Topology { topology });
-        let message = "CasterPipelineDescriptor::topology must be a triangle topology, got ";
+        let message =
+            "CasterPipelineDescriptor::primitive.topology must be a triangle topology, got ";
         assert_eq!(error.to_string(), format!("{message}{topology:?}"));
     }
     let error = pipeline(&CasterPipelineDescriptor {
-        strip_index_format: Some(wgpu::IndexFormat::Uint16),
+        primitive: wgpu::PrimitiveState {
+            strip_index_format: Some(wgpu::IndexFormat::Uint16),
+            ..Default::default()
+        },
         ..CasterPipelineDescriptor::new()
     });
     let error = error.expect_err("a strip format");
@@ -122,7 +129,7 @@ fn topologies_that_are_no_triangles() {
     assert_eq!(error, CasterError::StripIndexFormat { topology });
     assert_eq!(
         error.to_string(),
-        "CasterPipelineDescriptor::strip_index_format goes with strip topologies only, got TriangleList"
+        "CasterPipelineDescriptor::primitive.strip_index_format goes with strip topologies only, got TriangleList"
     );
 }
 
@@ -257,5 +264,36 @@ fn more_vertex_buffers_than_the_device_takes() {
         });
         let fits = count <= gpu().device.limits().max_vertex_buffers;
         assert_eq!(created.is_ok(), fits, "{count} buffers: {created:?}");
+    }
+}
+
+/// What rasterizes otherwise than a depth map must be is refused, whatever features the device has.
+#[test]
+fn primitives_that_give_no_depth_map() {
+    let plain = wgpu::PrimitiveState::default();
+    for primitive in [
+        wgpu::PrimitiveState {
+            polygon_mode: wgpu::PolygonMode::Line,
+            ..plain
+        },
+        wgpu::PrimitiveState {
+            unclipped_depth: true,
+            ..plain
+        },
+        wgpu::PrimitiveState {
+            conservative: true,
+            ..plain
+        },
+    ] {
+        let error = pipeline(&CasterPipelineDescriptor {
+            primitive,
+            ..CasterPipelineDescriptor::new()
+        });
+        let wanted = CasterError::Primitive {
+            unclipped_depth: primitive.unclipped_depth,
+            polygon_mode: primitive.polygon_mode,
+            conservative: primitive.conservative,
+        };
+        assert_eq!(error.expect_err("no depth map"), wanted);
     }
 }

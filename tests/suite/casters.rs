@@ -280,8 +280,11 @@ fn strips_restart() {
     let strip = pipeline(
         gpu,
         &CasterPipelineDescriptor {
-            topology: wgpu::PrimitiveTopology::TriangleStrip,
-            strip_index_format: Some(wgpu::IndexFormat::Uint16),
+            primitive: wgpu::PrimitiveState {
+                topology: wgpu::PrimitiveTopology::TriangleStrip,
+                strip_index_format: Some(wgpu::IndexFormat::Uint16),
+                ..Default::default()
+            },
             ..CasterPipelineDescriptor::new()
         },
     );
@@ -335,8 +338,11 @@ fn culling_takes_the_faces_it_names() {
     ];
     for (cull, front_face, height) in cases {
         let descriptor = CasterPipelineDescriptor {
-            cull,
-            front_face,
+            primitive: wgpu::PrimitiveState {
+                cull_mode: cull,
+                front_face,
+                ..Default::default()
+            },
             ..CasterPipelineDescriptor::new()
         };
         let pipeline = pipeline(gpu, &descriptor);

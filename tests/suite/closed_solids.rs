@@ -89,7 +89,10 @@ fn pipeline(gpu: &Gpu, cull: Option<wgpu::Face>) -> CasterPipeline {
     CasterPipeline::new(
         &gpu.device,
         &CasterPipelineDescriptor {
-            cull,
+            primitive: wgpu::PrimitiveState {
+                cull_mode: cull,
+                ..Default::default()
+            },
             ..Default::default()
         },
     )

@@ -326,8 +326,11 @@ fn casters_find_the_pass_as_it_should_be() {
     let other = CasterPipeline::new(
         &gpu.device,
         &CasterPipelineDescriptor {
-            cull: Some(wgpu::Face::Back),
-            front_face: wgpu::FrontFace::Cw,
+            primitive: wgpu::PrimitiveState {
+                cull_mode: Some(wgpu::Face::Back),
+                front_face: wgpu::FrontFace::Cw,
+                ..Default::default()
+            },
             ..Default::default()
         },
     )

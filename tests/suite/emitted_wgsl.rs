@@ -36,7 +36,7 @@ struct Named {
 /// A light of a kind for every filter and bias that it takes. Maps are one texel: only the WGSL is of interest.
 fn every_way(kind: Kind) -> Vec<Named> {
     let directions: &[Filter] = if kind.has_cube() { &DIRECTIONS } else { &[] };
-    let filters = [&Filter::PLANAR[..], &SOFT, directions].concat();
+    let filters = [Filter::PLANAR, &SOFT, directions].concat();
     filters
         .iter()
         .flat_map(|filter| BIASES.map(|bias| (*filter, bias)))

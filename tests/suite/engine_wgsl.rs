@@ -102,7 +102,10 @@ impl Card {
                     })],
                     bind_group_layouts: &[Some(&layout)],
                 },
-                topology: wgpu::PrimitiveTopology::TriangleStrip,
+                primitive: wgpu::PrimitiveState {
+                    topology: wgpu::PrimitiveTopology::TriangleStrip,
+                    ..Default::default()
+                },
                 ..CasterPipelineDescriptor::new()
             },
         )

@@ -113,8 +113,11 @@ fn meshes_that_do_not_go_with_their_pipelines() {
     let short = wgpu::IndexFormat::Uint16;
     let long = wgpu::IndexFormat::Uint32;
     let descriptor = CasterPipelineDescriptor {
-        topology: wgpu::PrimitiveTopology::TriangleStrip,
-        strip_index_format: Some(short),
+        primitive: wgpu::PrimitiveState {
+            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            strip_index_format: Some(short),
+            ..Default::default()
+        },
         ..CasterPipelineDescriptor::new()
     };
     let strip = CasterPipeline::new(&gpu.device, &descriptor).expect("a valid strip");
@@ -151,8 +154,11 @@ fn meshes_that_cannot_be_drawn() {
     let list = default_pipeline(gpu);
     let strip = |strip_index_format| {
         let descriptor = CasterPipelineDescriptor {
-            topology: wgpu::PrimitiveTopology::TriangleStrip,
-            strip_index_format,
+            primitive: wgpu::PrimitiveState {
+                topology: wgpu::PrimitiveTopology::TriangleStrip,
+                strip_index_format,
+                ..Default::default()
+            },
             ..CasterPipelineDescriptor::new()
         };
         CasterPipeline::new(&gpu.device, &descriptor).expect("a valid strip")

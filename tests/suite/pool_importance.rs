@@ -2,8 +2,8 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, ShadowCaster, SpotLight, pool::PoolDescriptor, pool::PoolLight,
-    pool::SpotShadowPool, report::ViewStatus,
+    Aabb, ShadowCaster, SpotLight, pool::PoolDescriptor, pool::PoolLight, pool::SpotShadowPool,
+    report::ViewStatus,
 };
 
 use crate::suite::pool::frame;

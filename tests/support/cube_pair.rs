@@ -78,7 +78,10 @@ impl<'a> Stage<'a> {
             let pipeline = CasterPipeline::new(
                 &gpu.device,
                 &CasterPipelineDescriptor {
-                    cull: look.cull,
+                    primitive: wgpu::PrimitiveState {
+                        cull_mode: look.cull,
+                        ..Default::default()
+                    },
                     ..Default::default()
                 },
             )

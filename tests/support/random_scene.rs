@@ -25,7 +25,7 @@ pub struct World {
     pub camera: Camera,
     pub max_distance: f64,
     pub cascades: u32,
-    pub split: CascadeSplit,
+    pub split: CascadeSplit<'static>,
     /// The floor casts as well as receives, or only receives.
     pub floor_casts: bool,
 }

@@ -43,7 +43,7 @@ fn any_descriptor_is_taken_or_refused() {
                 0 => CascadeSplit::Uniform,
                 1 => CascadeSplit::Logarithmic,
                 2 => CascadeSplit::Explicit {
-                    ends: [lambda, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0],
+                    ends: &[lambda, 2.0, 3.0],
                 },
                 _ => CascadeSplit::Practical { lambda },
             };
@@ -125,9 +125,7 @@ impl Lights {
             &DirectionalShadowDescriptor {
                 map_size,
                 cascades: 3,
-                split: CascadeSplit::Explicit {
-                    ends: [2.0, 10.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-                },
+                split: CascadeSplit::Explicit { ends: &[2.0, 10.0] },
                 blend: 0.2,
                 stability: Stability::BoundingSphere,
                 ..Default::default()

@@ -176,10 +176,13 @@ fn any_pipeline_is_taken_or_refused() {
             };
             let descriptor = CasterPipelineDescriptor {
                 vertex,
-                cull,
-                front_face,
-                topology,
-                strip_index_format,
+                primitive: wgpu::PrimitiveState {
+                    cull_mode: cull,
+                    front_face,
+                    topology,
+                    strip_index_format,
+                    ..Default::default()
+                },
                 depth_formats: &formats,
                 ..CasterPipelineDescriptor::new()
             };
@@ -204,8 +207,11 @@ fn any_buffers_of_a_mesh_are_taken_or_refused() {
                 position: PositionAttribute::float32x3(12),
                 model,
             },
-            topology,
-            strip_index_format,
+            primitive: wgpu::PrimitiveState {
+                topology,
+                strip_index_format,
+                ..Default::default()
+            },
             ..CasterPipelineDescriptor::new()
         };
         CasterPipeline::new(&gpu.device, &descriptor).expect("a valid pipeline")

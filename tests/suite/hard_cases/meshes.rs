@@ -32,7 +32,10 @@ fn depths(pipeline: &CasterPipeline, mesh: &Mesh, transform: Mat4) -> Vec<f32> {
 
 fn pipeline(cull: Option<wgpu::Face>) -> CasterPipeline {
     let descriptor = CasterPipelineDescriptor {
-        cull,
+        primitive: wgpu::PrimitiveState {
+            cull_mode: cull,
+            ..Default::default()
+        },
         ..CasterPipelineDescriptor::new()
     };
     CasterPipeline::new(&gpu().device, &descriptor).expect("a valid pipeline")

@@ -79,7 +79,10 @@ fn gaps(sun: &mut Sun, wall: Wall, elevation: f64, heading: f64, random: &mut Ra
     let cull = (wall == Wall::BackOfSolid).then_some(wgpu::Face::Front);
     let pipeline = |cull| {
         let descriptor = CasterPipelineDescriptor {
-            cull,
+            primitive: wgpu::PrimitiveState {
+                cull_mode: cull,
+                ..Default::default()
+            },
             ..CasterPipelineDescriptor::new()
         };
         CasterPipeline::new(&gpu.device, &descriptor).expect("a valid pipeline")
