@@ -56,7 +56,7 @@ pub struct OmniLight {
 ///
 /// - each face that anything casts into is drawn whole: none is kept, and none is made from what stands still;
 /// - every caster has a built-in vertex stage ([`CasterVertex::BuiltIn`](crate::caster::CasterVertex::BuiltIn)), tells its triangles
-///   ([`ShadowCaster::triangles`]) and draws the same into every view ([`ShadowCaster::same_in_every_view`]), as
+///   ([`ShadowCaster::triangles`](crate::ShadowCaster::triangles)) and draws the same into every view ([`ShadowCaster::same_in_every_view`](crate::ShadowCaster::same_in_every_view)), as
 ///   [`MeshCaster`](crate::MeshCaster) does;
 /// - no caster goes on beyond the light's range into a face that its nearer part does not touch;
 /// - 6 × the triangles of all casters < 4000 × the passes saved + 96 × the draw calls saved.
