@@ -3,17 +3,20 @@
 //! # A frame
 //!
 //! ```text
-//! light + camera + caster bounds
-//!    │  fit        pure mathematics in f64, no wgpu, returns values
+//! light + cameras + caster bounds
+//!    │  fit        finds what each view covers and which casters reach it: f64 mathematics without wgpu
 //!    ▼
 //! ShadowView[]     one depth render each: matrices, texel size, depth range
-//!    │  cast       culls casters per view, skips views that need nothing, records depth passes
+//!    │  cast       decides what is kept, copied or drawn, and records the depth passes
 //!    ▼
 //! depth texture    layers: cascades of a sun, the map of a spot, six faces of a point light
 //!    │  receive    bind group and WGSL: your fragment shader calls shadow_NAME(position, normal)
 //!    ▼
-//! your picture     and a ShadowReport
+//! your image       and a ShadowReport
 //! ```
+//!
+//! The lights themselves ([`DirectionalShadow`], [`SpotShadow`], [`OmniShadow`] and the pools) wire these floors together.
+//! `ARCHITECTURE.md` in the repository follows a light's direction and a caster's bounds through them, file by file.
 //!
 //! Everything is recorded into your encoder, in order: uniforms first, then depth passes. The encoder must be submitted before
 //! what asks for the shadows. Several frames may be recorded before one submission: each shows its own state.

@@ -280,7 +280,7 @@ impl Layer {
     /// all casters are then drawn.
     fn make_static_cache(&mut self, device: &wgpu::Device, map: &DepthMap) -> bool {
         if self.static_cache.is_none() && !self.static_cache_failed {
-            let label = format!("{} still part", self.label);
+            let label = format!("{} static casters", self.label);
             self.static_cache =
                 DepthMap::new(device, &label, "map_size", map.size(), 1, map.format()).ok();
             self.static_cache_failed = self.static_cache.is_none();
