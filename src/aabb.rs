@@ -1,6 +1,6 @@
 //! Axis-aligned boxes in render space.
 
-use glam::{Mat4, Vec3};
+use glam::{DVec3, Mat4, Vec3};
 
 /// An axis-aligned bounding box in render space (f32, the engine's unit).
 ///
@@ -75,6 +75,30 @@ impl Aabb {
 
     fn is_nan(&self) -> bool {
         self.min.is_nan() || self.max.is_nan()
+    }
+
+    /// Returns the smallest box of f32 corners that holds the box of f64 corners from `min` to `max`.
+    pub(crate) fn around(min: DVec3, max: DVec3) -> Self {
+        let down = |value: f64| {
+            let rounded = value as f32;
+            if f64::from(rounded) > value {
+                rounded.next_down()
+            } else {
+                rounded
+            }
+        };
+        let up = |value: f64| {
+            let rounded = value as f32;
+            if f64::from(rounded) < value {
+                rounded.next_up()
+            } else {
+                rounded
+            }
+        };
+        Self {
+            min: Vec3::new(down(min.x), down(min.y), down(min.z)),
+            max: Vec3::new(up(max.x), up(max.y), up(max.z)),
+        }
     }
 
     /// Corner `index` in `0..8`: bit 0 chooses x, bit 1 y, bit 2 z; a set bit takes `max`.

@@ -104,8 +104,9 @@ pub use {glam, wgpu};
 pub mod caster {
     pub use crate::cast::{
         CasterPipelineDescriptor, CasterVertex, MeshCasterDescriptor, MeshIndices, ModelTransform,
-        PositionAttribute, is_closed_solid,
+        PositionAttribute, caster_shape, is_closed_solid,
     };
+    pub use crate::fit::CasterShape;
 }
 
 /// Pools of spot and point lights: many lights in one texture array, looked up by index.

@@ -3,8 +3,8 @@
 use glam::Vec3;
 use wgpu_shadows::{
     Aabb, CasterPipeline, Revision, ShadowCaster, ShadowView, caster::CasterPipelineDescriptor,
-    caster::CasterVertex, caster::ModelTransform, caster::PositionAttribute,
-    caster::is_closed_solid,
+    caster::CasterShape, caster::CasterVertex, caster::ModelTransform, caster::PositionAttribute,
+    caster::caster_shape, caster::is_closed_solid,
 };
 
 use crate::device::Gpu;
@@ -16,6 +16,7 @@ pub struct SceneCaster<'a> {
     geometry: &'a Geometry,
     draw: &'a Draw,
     bounds_render: Aabb,
+    shape_render: CasterShape,
     pipeline: CasterPipeline,
     /// Alpha-masked: its holes let light through.
     masked: bool,
@@ -35,6 +36,10 @@ impl ShadowCaster for SceneCaster<'_> {
             pass.set_bind_group(1, &self.geometry.material_groups[self.draw.material], &[]);
         }
         self.geometry.draw(pass, self.draw);
+    }
+
+    fn shape(&self) -> CasterShape {
+        self.shape_render
     }
 
     fn keeps_pass_state(&self) -> bool {
@@ -89,6 +94,7 @@ pub fn scene_casters<'a>(
     let (solid, closed, masked) = (make(&solid)?, make(&closed)?, make(&masked)?);
     let closed_mirrored = closed.mirrored();
     let is_closed: Vec<bool> = scene.meshes.iter().map(is_closed_mesh).collect();
+    let shapes: Vec<CasterShape> = scene.meshes.iter().map(mesh_shape).collect();
     Ok(geometry
         .draws
         .iter()
@@ -99,6 +105,7 @@ pub fn scene_casters<'a>(
                 geometry,
                 draw,
                 bounds_render: instance.bounds_render,
+                shape_render: shapes[instance.mesh].transformed(&instance.render_from_model),
                 pipeline: match (has_holes, is_closed[instance.mesh], draw.mirrored) {
                     (true, ..) => &masked,
                     (false, false, _) => &solid,
@@ -113,7 +120,14 @@ pub fn scene_casters<'a>(
 }
 
 fn is_closed_mesh(mesh: &Mesh) -> bool {
-    let positions = mesh.vertices.iter();
-    let positions: Vec<Vec3> = positions.map(|vertex| vertex.position.into()).collect();
-    is_closed_solid(&positions, &mesh.indices)
+    is_closed_solid(&positions(mesh), &mesh.indices)
+}
+
+fn mesh_shape(mesh: &Mesh) -> CasterShape {
+    caster_shape(&positions(mesh), &mesh.indices)
+}
+
+fn positions(mesh: &Mesh) -> Vec<Vec3> {
+    let vertices = mesh.vertices.iter();
+    vertices.map(|vertex| vertex.position.into()).collect()
 }

@@ -1,6 +1,7 @@
 //! Defines what an engine implements for each object that casts shadows.
 
 use crate::cast::CasterPipeline;
+use crate::fit::CasterShape;
 use crate::{Aabb, ShadowView};
 
 /// Identifies what a caster would draw and counts its versions, so that a map is kept while nothing in it changes.
@@ -93,6 +94,13 @@ pub trait ShadowCaster {
     /// can be lit where it should be shadowed.
     fn receives(&self) -> bool {
         true
+    }
+
+    /// Returns what is known of the surface within the bounds. The default, [`CasterShape::Any`], is always correct. For
+    /// a ground or a wall that is a convex solid, saying so keeps the map from covering all of it
+    /// ([`CasterShape`] states the symptom of a wrong value).
+    fn shape(&self) -> CasterShape {
+        CasterShape::Any
     }
 
     /// Returns whether [`ShadowCaster::draw`] sets no state of the pass but vertex and index buffers and bind groups 1

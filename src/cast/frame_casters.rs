@@ -1,6 +1,7 @@
 //! Holds the casters of a frame with the values that their methods returned.
 
 use crate::cast::{Revision, ShadowCaster};
+use crate::fit::CasterShape;
 use crate::{Aabb, ShadowError, check};
 
 /// Holds what the methods of a caster returned in a frame, apart from its bounds.
@@ -19,6 +20,8 @@ pub(crate) struct FrameCasters<'a> {
     pub casters: &'a [&'a dyn ShadowCaster],
     /// Has one entry per caster, empty for one that does not cast.
     pub bounds: &'a [Aabb],
+    /// Has one entry per caster.
+    pub shapes: &'a [CasterShape],
     /// Has one entry per caster.
     pub facts: &'a [CasterFacts],
     /// Is the path of the list in the caller's frame, for errors.
@@ -45,28 +48,31 @@ impl<'a> FrameCasters<'a> {
 #[derive(Debug, Default)]
 pub(crate) struct CasterAnswers {
     bounds: Vec<Aabb>,
+    shapes: Vec<CasterShape>,
     facts: Vec<CasterFacts>,
 }
 
 impl CasterAnswers {
-    /// Queries all casters, and adds the bounds of those that receive to `receivers`. `field` is the path of the list
-    /// in the caller's frame.
+    /// Queries all casters, and calls `receives` with index and bounds of those that receive. `field` is the path of the
+    /// list in the caller's frame.
     pub fn ask<'a>(
         &'a mut self,
         field: &'static str,
         casters: &'a [&'a dyn ShadowCaster],
-        receivers: &mut Vec<Aabb>,
+        mut receives: impl FnMut(u32, Aabb),
     ) -> Result<FrameCasters<'a>, ShadowError> {
         self.bounds.clear();
+        self.shapes.clear();
         self.facts.clear();
         for (index, caster) in casters.iter().enumerate() {
             let bounds = caster.bounds();
             check::bounds(field, index, &bounds)?;
             if caster.receives() {
-                receivers.push(bounds);
+                receives(index as u32, bounds);
             }
             let casts = caster.casts();
             self.bounds.push(if casts { bounds } else { Aabb::EMPTY });
+            self.shapes.push(caster.shape());
             self.facts.push(CasterFacts {
                 revision: caster.revision(),
                 triangles: caster.triangles(),
@@ -77,6 +83,7 @@ impl CasterAnswers {
         Ok(FrameCasters {
             casters,
             bounds: &self.bounds,
+            shapes: &self.shapes,
             facts: &self.facts,
             field,
         })

@@ -9,6 +9,7 @@ use crate::cast::mesh_descriptor::{MeshCasterDescriptor, MeshIndices};
 use crate::cast::{CasterPipeline, ModelTransform, Revision, ShadowCaster};
 use crate::error::CasterError;
 use crate::error::DeviceError;
+use crate::fit::CasterShape;
 use crate::gpu::filled_buffer;
 use crate::{Aabb, ShadowView};
 
@@ -26,6 +27,9 @@ pub struct MeshCaster {
     bounds_render: Aabb,
     transform: Option<wgpu::Buffer>,
     render_from_model: Mat4,
+    shape_model: CasterShape,
+    casts: bool,
+    receives: bool,
     label: String,
     id: u64,
     version: u64,
@@ -60,6 +64,9 @@ impl MeshCaster {
             bounds_render: descriptor.bounds_model,
             transform: None,
             render_from_model: descriptor.render_from_model,
+            shape_model: CasterShape::Any,
+            casts: true,
+            receives: true,
             label: descriptor.label.unwrap_or("shadow mesh caster").to_owned(),
             id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
             version: 0,
@@ -72,6 +79,19 @@ impl MeshCaster {
         }
         mesh.bounds_render = mesh.bounds(&mesh.bounds_model, &mesh.render_from_model)?;
         Ok(mesh)
+    }
+
+    /// Sets what is known of the surface in model space; [`caster_shape`](crate::caster::caster_shape) finds it. The
+    /// shape of a new mesh is [`CasterShape::Any`].
+    pub fn set_shape(&mut self, shape_model: CasterShape) {
+        self.shape_model = shape_model;
+    }
+
+    /// Sets whether the mesh casts shadows and whether shadows are looked up on its surface
+    /// ([`ShadowCaster::casts`], [`ShadowCaster::receives`]). A new mesh does both.
+    pub fn set_roles(&mut self, casts: bool, receives: bool) {
+        self.casts = casts;
+        self.receives = receives;
     }
 
     /// Sets the transform to render space from model space. A transform equal to the present one changes nothing.
@@ -173,6 +193,21 @@ impl ShadowCaster for MeshCaster {
                 pass.set_index_buffer(buffer.slice(..), *format);
                 pass.draw_indexed(indices.clone(), *base_vertex, 0..1);
             }
+        }
+    }
+
+    fn casts(&self) -> bool {
+        self.casts
+    }
+
+    fn receives(&self) -> bool {
+        self.receives
+    }
+
+    fn shape(&self) -> CasterShape {
+        match self.transform {
+            Some(_) => self.shape_model.transformed(&self.render_from_model),
+            None => self.shape_model,
         }
     }
 

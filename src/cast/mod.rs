@@ -10,7 +10,7 @@
 //! caster_limits.rs       what pipelines and passes need of a device's limits
 //! view_uniform.rs        the uniforms of a view in a vertex stage
 //! mesh.rs                MeshCaster: a ready-made caster; mesh_descriptor.rs, mesh_check.rs: its descriptor and checks
-//! closed.rs              which meshes are closed solids
+//! closed.rs              which meshes are closed solids; mesh_shape.rs: which cannot shadow themselves
 //! layer_cache.rs         what a layer caches, and what a frame must draw
 //! recorder.rs            the passes
 //! draw_casters.rs        the loop that draws casters in them
@@ -29,6 +29,7 @@ mod layer_cache;
 mod mesh;
 mod mesh_check;
 mod mesh_descriptor;
+mod mesh_shape;
 mod pipeline;
 mod pipeline_build;
 mod pipeline_descriptor;
@@ -43,6 +44,7 @@ pub(crate) use frame_casters::{CasterAnswers, FrameCasters};
 pub(crate) use layer_cache::{Plan, ViewDraws};
 pub use mesh::MeshCaster;
 pub use mesh_descriptor::{MeshCasterDescriptor, MeshIndices};
+pub use mesh_shape::caster_shape;
 pub use pipeline::CasterPipeline;
 pub use pipeline_descriptor::{
     CasterPipelineDescriptor, CasterVertex, ModelTransform, PositionAttribute,

@@ -143,6 +143,14 @@ impl LightBox {
         self.max = self.max.max(other.max);
     }
 
+    /// Returns the part of the box, at all of its own depths, that is inside the sides of `other` as seen from the
+    /// light, or `None` where there is none.
+    pub fn intersection_xy(&self, other: &Self) -> Option<Self> {
+        let min = self.min.max(other.min).with_z(self.min.z);
+        let max = self.max.min(other.max).with_z(self.max.z);
+        min.cmple(max).all().then_some(Self { min, max })
+    }
+
     /// Returns whether the two boxes overlap as seen from the light (xy only; touching counts).
     pub fn overlaps_xy(&self, other: &Self) -> bool {
         self.min.x <= other.max.x

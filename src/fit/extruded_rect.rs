@@ -69,14 +69,13 @@ impl ExtrudedRect {
     }
 }
 
-/// Adds the four sides of an extruded map rectangle to a region of render space.
+/// Adds the four sides of an extruded rectangle, from `min` to `max` across the light, to a region of render space.
 pub(crate) fn push_extruded_rect(
     region: &mut HalfSpaces,
     axes: &LightAxes,
     origin: DVec3,
-    rect: &MapRect,
+    (min, max): (DVec2, DVec2),
 ) {
-    let (min, max) = (rect.min, rect.max());
     for (axis, low, high) in [(axes.right(), min.x, max.x), (axes.up(), min.y, max.y)] {
         let origin = axis.dot(origin);
         region.push(HalfSpace {
@@ -134,7 +133,7 @@ mod tests {
                     ..rect
                 };
                 let mut region = HalfSpaces::default();
-                push_extruded_rect(&mut region, &axes, origin, &grown);
+                push_extruded_rect(&mut region, &axes, origin, (grown.min, grown.max()));
                 let mut any = false;
                 region.visit_vertices(&bounds, |_| any = true);
                 any

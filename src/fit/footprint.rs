@@ -62,7 +62,7 @@ impl Slice<'_> {
     ) -> SliceReport {
         let (near, far) = self.between;
         let mut region = self.camera.slice(near, far);
-        push_extruded_rect(&mut region, axes, origin, rect);
+        push_extruded_rect(&mut region, axes, origin, (rect.min, rect.max()));
         let visible = Aabb::new(
             self.visible.render_min.as_vec3(),
             self.visible.render_max.as_vec3(),

@@ -13,7 +13,11 @@
 //! image_corners.rs  the sphere around a slice of a camera's view
 //! visible.rs      what a camera sees of the receivers
 //! extruded_rect.rs  what reaches into the extruded map rectangle
-//! directional.rs  the complete fit of a directional light
+//! caster_shape.rs  what an engine may say of a caster's surface
+//! caster_parts.rs  the parts of large casters behind which receivers lie
+//! required.rs     what a cascade must cover of the receivers
+//! cascade_bounds.rs  the light-space bounds of a cascade
+//! directional.rs  the complete fit of a directional light; directional_input.rs: its input
 //! reached.rs      what a local light reaches
 //! local.rs        the complete fit of a spot or point light's views; local_input.rs: its input
 //! view.rs         ShadowView: the value that maps are rendered and sampled with
@@ -21,7 +25,11 @@
 
 mod axes;
 mod camera;
+mod cascade_bounds;
+mod caster_parts;
+mod caster_shape;
 mod directional;
+mod directional_input;
 mod extruded_rect;
 mod footprint;
 mod image_corners;
@@ -30,6 +38,7 @@ mod local_input;
 mod map_rect;
 mod reached;
 mod region;
+mod required;
 mod size_step;
 mod spacing;
 mod split;
@@ -41,7 +50,9 @@ pub use axes::LightAxes;
 pub(crate) use axes::LightBox;
 pub(crate) use camera::CameraFrustum;
 pub use camera::CameraView;
-pub(crate) use directional::{DirectionalFit, FitInput, FitLimits, FitScratch, Region};
+pub use caster_shape::CasterShape;
+pub(crate) use directional::{DirectionalFit, FitScratch};
+pub(crate) use directional_input::{FitInput, FitLimits, Region};
 pub use footprint::SliceReport;
 pub(crate) use local::{LocalFit, MAX_LOCAL_VIEWS};
 pub(crate) use local_input::LocalInput;
@@ -52,3 +63,4 @@ pub(crate) use split::MAX_CASCADES;
 pub use stability::Stability;
 pub use view::ShadowView;
 pub(crate) use view::ViewPlacement;
+pub(crate) use visible::Receivers;

@@ -358,7 +358,7 @@ impl ShadowView {
 const KEPT_ROUNDING_TEXELS: f64 = 1.0 / 64.0;
 
 /// Returns the rounding error in world units of coordinates up to `render_reach`: `4u` of it.
-fn position_error_world(render_reach: f64) -> f64 {
+pub(crate) fn position_error_world(render_reach: f64) -> f64 {
     4.0 * UNIT_ROUNDOFF * render_reach
 }
 

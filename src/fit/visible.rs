@@ -5,7 +5,46 @@ use glam::DVec3;
 use crate::Aabb;
 use crate::fit::axes::{LightAxes, LightBox};
 use crate::fit::camera::CameraFrustum;
-use crate::fit::region::Relation;
+use crate::fit::region::{HalfSpaces, Relation};
+
+/// Is the part of a receiver's bounds that counts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SeenReceiver {
+    /// Bounds the whole receiver.
+    pub bounds: Aabb,
+    /// Is the least corner of the box around the part, in render space.
+    pub min: DVec3,
+    /// Is the greatest corner.
+    pub max: DVec3,
+    /// Is the index of the caster whose surface receives, if the receiver casts as well.
+    pub caster: Option<u32>,
+}
+
+impl SeenReceiver {
+    /// Returns a receiver that counts as a whole.
+    pub fn whole(bounds: &Aabb, caster: Option<u32>) -> Self {
+        Self {
+            bounds: *bounds,
+            min: bounds.min.as_dvec3(),
+            max: bounds.max.as_dvec3(),
+            caster,
+        }
+    }
+
+    /// Returns the part of that side of the bounds, across `axis`, that faces the light; `None` where no side does or
+    /// nothing of it counts.
+    pub fn lit_side(&self, axis: usize, toward_light: DVec3) -> Option<(DVec3, DVec3)> {
+        let (mut min, mut max) = (self.min, self.max);
+        if toward_light[axis] > 0.0 && max[axis] == f64::from(self.bounds.max[axis]) {
+            min[axis] = max[axis];
+        } else if toward_light[axis] < 0.0 && min[axis] == f64::from(self.bounds.min[axis]) {
+            max[axis] = min[axis];
+        } else {
+            return None;
+        }
+        Some((min, max))
+    }
+}
 
 /// Is a receiver of which one of the cameras sees a part.
 #[derive(Clone, Copy, Debug)]
@@ -55,62 +94,97 @@ impl SeenBounds {
     }
 }
 
-/// Fills `seen` with the receivers that each of the cameras sees a part of, and returns the bounds of what they see
-/// together.
-pub(crate) fn find(
-    cameras: &[CameraFrustum],
-    receivers: &[Aabb],
-    seen: &mut Vec<Seen>,
-) -> SeenBounds {
-    seen.clear();
-    let mut all = SeenBounds::NOTHING;
-    for (index, camera) in cameras.iter().enumerate() {
-        find_through((index, camera), receivers, seen, &mut all);
-    }
-    all
+/// Holds the surfaces on which shadows are looked up in a frame.
+#[derive(Clone, Copy)]
+pub(crate) struct Receivers<'a> {
+    /// Holds the bounds in render space.
+    pub bounds: &'a [Aabb],
+    /// Holds, for each of them, the index of the caster whose surface it is, if it is one's.
+    pub casters: &'a [Option<u32>],
 }
 
-fn find_through(
-    (index, camera): (usize, &CameraFrustum),
-    receivers: &[Aabb],
-    seen: &mut Vec<Seen>,
-    all: &mut SeenBounds,
-) {
-    for bounds in receivers.iter().filter(|bounds| !bounds.is_empty()) {
-        let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
-        let mut part = Seen {
-            camera: index,
-            bounds: *bounds,
-            wholly: false,
-            depth_near: f64::INFINITY,
-            depth_far: f64::NEG_INFINITY,
-        };
-        match camera.planes.relation(bounds) {
-            Relation::Outside => continue,
-            Relation::Inside => {
-                let middle = camera.depth((min + max) * 0.5);
-                let reach = camera.forward().abs().dot((max - min) * 0.5);
-                part.wholly = true;
-                part.depth_near = middle - reach;
-                part.depth_far = middle + reach;
-                all.include(&part, min, max);
-            }
-            Relation::Across => {
-                let (mut part_min, mut part_max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-                camera.planes.visit_vertices(bounds, |vertex| {
-                    part_min = part_min.min(vertex);
-                    part_max = part_max.max(vertex);
-                    let depth = camera.depth(vertex);
-                    part.depth_near = part.depth_near.min(depth);
-                    part.depth_far = part.depth_far.max(depth);
-                });
-                if part.depth_near > part.depth_far {
-                    continue;
-                }
-                all.include(&part, part_min, part_max);
-            }
+impl<'a> Receivers<'a> {
+    /// Returns the bounds that are not empty, with the casters whose surfaces they are.
+    pub fn iter(&self) -> impl Iterator<Item = (&'a Aabb, Option<u32>)> + use<'a> {
+        let all = self.bounds.iter().zip(self.casters.iter().copied());
+        all.filter(|(bounds, _)| !bounds.is_empty())
+    }
+}
+
+/// Holds what cameras see, in lists that are reused from frame to frame.
+#[derive(Debug, Default)]
+pub(crate) struct SeenLists {
+    /// Holds the receivers that each camera sees a part of.
+    pub seen: Vec<Seen>,
+    /// Holds the parts that count: what the cameras see, or what is in a region without a camera.
+    pub parts: Vec<SeenReceiver>,
+}
+
+impl SeenLists {
+    /// Fills the lists with the receivers that each of the cameras sees a part of, and returns the bounds of what they
+    /// see together.
+    pub fn find(&mut self, cameras: &[CameraFrustum], receivers: Receivers<'_>) -> SeenBounds {
+        self.seen.clear();
+        self.parts.clear();
+        let mut all = SeenBounds::NOTHING;
+        for camera in cameras.iter().enumerate() {
+            self.find_through(camera, receivers, &mut all);
         }
-        seen.push(part);
+        all
+    }
+
+    /// Fills the lists with all of the receivers, seen by no camera.
+    pub fn set_whole(&mut self, receivers: Receivers<'_>) {
+        self.seen.clear();
+        self.parts.clear();
+        let whole = receivers.iter();
+        self.parts
+            .extend(whole.map(|(bounds, caster)| SeenReceiver::whole(bounds, caster)));
+    }
+
+    fn find_through(
+        &mut self,
+        (index, camera): (usize, &CameraFrustum),
+        receivers: Receivers<'_>,
+        all: &mut SeenBounds,
+    ) {
+        for (bounds, caster) in receivers.iter() {
+            let mut receiver = SeenReceiver::whole(bounds, caster);
+            let mut part = Seen {
+                camera: index,
+                bounds: *bounds,
+                wholly: false,
+                depth_near: f64::INFINITY,
+                depth_far: f64::NEG_INFINITY,
+            };
+            match camera.planes.relation(bounds) {
+                Relation::Outside => continue,
+                Relation::Inside => {
+                    let middle = camera.depth((receiver.min + receiver.max) * 0.5);
+                    let half = (receiver.max - receiver.min) * 0.5;
+                    let reach = camera.forward().abs().dot(half);
+                    part.wholly = true;
+                    part.depth_near = middle - reach;
+                    part.depth_far = middle + reach;
+                }
+                Relation::Across => {
+                    (receiver.min, receiver.max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+                    camera.planes.visit_vertices(bounds, |vertex| {
+                        receiver.min = receiver.min.min(vertex);
+                        receiver.max = receiver.max.max(vertex);
+                        let depth = camera.depth(vertex);
+                        part.depth_near = part.depth_near.min(depth);
+                        part.depth_far = part.depth_far.max(depth);
+                    });
+                    if part.depth_near > part.depth_far {
+                        continue;
+                    }
+                }
+            }
+            all.include(&part, receiver.min, receiver.max);
+            self.seen.push(part);
+            self.parts.push(receiver);
+        }
     }
 }
 
@@ -137,4 +211,33 @@ pub(crate) fn light_box_between(
         }
     }
     covered
+}
+
+/// Calls `visit` with points whose convex hull is, for each part that the camera at `index` sees between two depths, its
+/// intersection with `over`, the sides of a rectangle across the light.
+pub(crate) fn visit_between(
+    (index, camera): (usize, &CameraFrustum),
+    seen: &[Seen],
+    (depth_near, depth_far): (f64, f64),
+    over: &HalfSpaces,
+    mut visit: impl FnMut(DVec3),
+) {
+    let slice = camera.slice(depth_near, depth_far);
+    let mut region = slice;
+    for plane in over.as_slice() {
+        region.push(*plane);
+    }
+    let overlapping = seen.iter().filter(|part| {
+        part.camera == index && part.depth_near <= depth_far && part.depth_far >= depth_near
+    });
+    for part in overlapping {
+        if over.relation(&part.bounds) == Relation::Outside {
+            continue;
+        }
+        if part.wholly && part.depth_near >= depth_near && part.depth_far <= depth_far {
+            over.visit_vertices(&part.bounds, &mut visit);
+        } else {
+            region.visit_vertices(&part.bounds, &mut visit);
+        }
+    }
 }

@@ -2,10 +2,10 @@
 
 use glam::Vec3;
 
-use crate::cast::ViewDraws;
+use crate::cast::{FrameCasters, ViewDraws};
 use crate::check;
 use crate::fit::{
-    DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, MAX_CASCADES, Region,
+    DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, MAX_CASCADES, Receivers, Region,
 };
 use crate::light::layer_limits::check_layers;
 use crate::receive::{
@@ -181,6 +181,7 @@ impl DirectionalShadow {
             limits: FitLimits {
                 map_size: descriptor.map_size,
                 margin_texels: sampling.margin_texels(),
+                gap_texels: sampling.gap_texels(),
                 cascades: descriptor.cascades as usize,
                 split,
                 stability: descriptor.stability,
@@ -211,10 +212,14 @@ impl DirectionalShadow {
             origin: frame.origin,
             region: frame.region,
             casters: frame.casters.bounds,
-            receivers: frame.receivers,
+            shapes: frame.casters.shapes,
+            receivers: Receivers {
+                bounds: frame.receivers,
+                casters: frame.receiver_casters,
+            },
         };
         let fit = self.fit.fit(&input, &self.limits, &mut self.scratch)?;
-        let views = self.drawn_views(&fit, &input)?;
+        let views = self.drawn_views(&fit, &input, &frame.casters)?;
         let layers: [_; MAX_CASCADES] =
             std::array::from_fn(|layer| LayerState::directional(layer as u32, fit.slices[layer]));
         let maps_frame = MapsFrame {
@@ -251,6 +256,7 @@ impl DirectionalShadow {
         &mut self,
         fit: &DirectionalFit,
         input: &FitInput<'_>,
+        casters: &FrameCasters<'_>,
     ) -> Result<Vec<ViewDraws>, ShadowError> {
         let mut views = self.maps.spare_views();
         for cascade in 0..self.limits.cascades {
@@ -261,7 +267,9 @@ impl DirectionalShadow {
             };
             let view =
                 ShadowView::orthographic(&input.axes, light_bounds, input.origin, cascade as u32);
-            views.push(ViewDraws::new(view.checked()?, drawn));
+            let view = view.checked()?;
+            let reach = depth_reach(&view, input, casters, &drawn);
+            views.push(ViewDraws::new(view.over_depths_from(reach), drawn));
         }
         Ok(views)
     }
@@ -275,4 +283,30 @@ impl DirectionalShadow {
     pub fn invalidate(&mut self) {
         self.maps.invalidate();
     }
+}
+
+/// Returns the largest render coordinate from which depths in the view are computed. Rasterisers interpolate between
+/// the corners of a triangle, and each is rounded where it is: a triangle that is larger than the view brings the
+/// rounding of corners far outside it. The size of a caster's triangles is taken to be that of as many equal ones that
+/// cover its bounds, or its bounds where their number is not known.
+fn depth_reach(
+    view: &ShadowView,
+    input: &FitInput<'_>,
+    casters: &FrameCasters<'_>,
+    drawn: &[u32],
+) -> f64 {
+    let mut reach = view.render_reach();
+    for &caster in drawn {
+        let bounds = &input.casters[caster as usize];
+        let farthest = f64::from(bounds.min.abs().max(bounds.max.abs()).max_element());
+        if farthest <= reach {
+            continue;
+        }
+        let diagonal = (bounds.max.as_dvec3() - bounds.min.as_dvec3()).length();
+        let pairs = f64::from(casters.facts(caster).triangles.max(2)) * 0.5;
+        reach = farthest
+            .min(view.render_reach() + diagonal / pairs.sqrt())
+            .max(reach);
+    }
+    reach
 }

@@ -43,6 +43,7 @@ pub struct ShadowFrameDescriptor<'d, 'c> {
 pub struct ShadowScene {
     answers: CasterAnswers,
     receivers: Vec<Aabb>,
+    receiver_casters: Vec<Option<u32>>,
     cameras: Vec<CameraFrustum>,
     seen: Vec<HalfSpaces>,
 }
@@ -84,10 +85,15 @@ impl ShadowScene {
         check::receiver_bounds("ShadowFrameDescriptor::receivers", descriptor.receivers)?;
         self.receivers.clear();
         self.receivers.extend_from_slice(descriptor.receivers);
+        self.receiver_casters.clear();
+        self.receiver_casters.resize(self.receivers.len(), None);
         let casters = self.answers.ask(
             "ShadowFrameDescriptor::casters",
             descriptor.casters,
-            &mut self.receivers,
+            |caster, bounds| {
+                self.receivers.push(bounds);
+                self.receiver_casters.push(Some(caster));
+            },
         )?;
         Ok(ShadowFrame {
             origin: descriptor.origin,
@@ -99,6 +105,7 @@ impl ShadowScene {
             seen: &self.seen,
             casters,
             receivers: &self.receivers,
+            receiver_casters: &self.receiver_casters,
         })
     }
 }
@@ -113,6 +120,8 @@ pub struct ShadowFrame<'a> {
     pub(crate) casters: FrameCasters<'a>,
     /// Bounds of all that receives.
     pub(crate) receivers: &'a [Aabb],
+    /// Holds, for each receiver, the index of the caster whose surface it is, if it is one's.
+    pub(crate) receiver_casters: &'a [Option<u32>],
 }
 
 impl ShadowFrame<'_> {

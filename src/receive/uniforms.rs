@@ -103,6 +103,12 @@ impl Sampling {
         self.bias.max_peter_panning_world(self.filter, view) + 2.0 * step as f32
     }
 
+    /// Height in texels, above a surface, below which a caster may be left without its shadow on it, at the worst angle.
+    pub fn gap_texels(&self) -> f64 {
+        let reach = self.bias.offset_texels(self.filter) + self.filter.reach_texels();
+        reach * std::f64::consts::SQRT_2
+    }
+
     /// Texels by which a lookup may leave the place of its receiver: the filter's reach, the way that an offset along the
     /// normal can lead across the map, and rounding.
     pub fn border_texels(&self) -> f64 {

@@ -205,7 +205,7 @@ fn a_window_that_moves_leaves_shadows_alone() {
     let mut sun = Sun::of_size(MAP_SIZE);
     let mut last: Option<(ShadowView, Vec<f32>, Camera)> = None;
     let (mut moves, mut compared, mut changed) = (0, 0, 0);
-    for frame in 0..120 {
+    for frame in 0..240 {
         let t = f64::from(frame) * 0.05;
         let eye = DVec3::new(t.sin() * 4.0, 3.5, 5.0 + t.cos());
         let camera = Camera::modern(eye, DVec3::new(t.cos(), 0.4, -0.3), 0.7, 1.6);

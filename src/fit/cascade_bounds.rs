@@ -1,0 +1,206 @@
+//! Fits the light-space bounds of one cascade of a directional light.
+
+use crate::fit::axes::LightBox;
+use crate::fit::caster_parts::CasterPart;
+use crate::fit::directional_input::{CasterBounds, FitInput, FitLimits, Region};
+use crate::fit::extruded_rect::push_extruded_rect;
+use crate::fit::map_rect::{DepthRange, LightSpaceBounds, MapRect, MapRectRequest};
+use crate::fit::region::HalfSpaces;
+use crate::fit::spacing::Spacing;
+use crate::fit::stability::Stability;
+use crate::fit::visible::{self, Seen};
+
+/// Is the largest distance in texels from the highest receiver to the near plane for the sake of casters whose bounds
+/// reach from there to below all receivers. So one object with bounds of a million kilometres does not take the depth's
+/// precision from all others: depths are f32, and their rounding comes to six texels at this range. It is 168 km for
+/// texels of one centimetre; of such casters, what is nearer to the light casts nothing.
+const MAX_TEXELS_TO_NEAR: f64 = (1 << 24) as f64;
+
+/// Is the largest share of a map's side that the height of a part above its receivers must reach to make the map cover
+/// the part: coarse maps show shadows that are smaller than the gap that the bias admits.
+const MAX_GAP_SHARE: f64 = 1.0 / 64.0;
+
+/// Holds the casters of a frame, as the fit of a cascade needs them.
+pub(crate) struct CascadeCasters<'a> {
+    /// Has one entry per caster.
+    pub whole: &'a [CasterBounds],
+    /// Holds the parts of casters that count with parts only, the highest first.
+    pub parts: &'a [CasterPart],
+}
+
+/// Returns the light-space bounds for receivers in `required`: seen from the light, what both receivers and casters
+/// cover. A caster counts as reaching the receivers where rounding makes that doubtful. Returns `None` where no caster
+/// reaches them. `seen` holds what cameras see, and the depths along the view between which the cascade lies.
+pub(crate) fn fit_bounds(
+    input: &FitInput<'_>,
+    limits: &FitLimits,
+    casters: &CascadeCasters<'_>,
+    (required, spacing): (LightBox, Spacing),
+    seen: (&[Seen], Option<(f64, f64)>),
+    held: Option<&LightSpaceBounds>,
+) -> Option<LightSpaceBounds> {
+    let follows_casters = match input.region {
+        Region::Bounds(_) => false,
+        Region::Everything => true,
+        Region::Cameras(_) => limits.stability == Stability::TightFit,
+    };
+    let gap_share = if follows_casters {
+        (limits.gap_texels / f64::from(limits.map_size)).min(MAX_GAP_SHARE)
+    } else {
+        0.0
+    };
+    let shadows = shadow_box(casters, &required, spacing, gap_share)?;
+    let mut covered = required;
+    if follows_casters {
+        covered.min = required.min.max(shadows.min).with_z(required.min.z);
+        covered.max = required
+            .max
+            .min(shadows.max)
+            .max(covered.min)
+            .with_z(required.max.z);
+        // Of a ground that reaches to the horizon, only what the map holds counts for its depths.
+        if let Some((farthest, nearest)) = depths_over(input, seen, &covered.grown(spacing.error()))
+        {
+            covered.min.z = farthest.max(required.min.z);
+            covered.max.z = nearest.min(required.max.z);
+        }
+    }
+    let highest_receiver = covered.max.z;
+    covered.max.z = shadows.max.z.max(covered.min.z);
+    let texel_floor = input
+        .texel_floor(&covered, highest_receiver)
+        .max(spacing.finest_texel());
+    let (min, max) = spacing.grown(
+        (covered.min.truncate(), covered.max.truncate()),
+        limits.map_size,
+        texel_floor,
+    );
+    let request = MapRectRequest {
+        min,
+        max,
+        map_size: limits.map_size,
+        margin_texels: limits.margin_texels,
+        texel_floor,
+        full_half_side: f64::INFINITY,
+    };
+    let rect = MapRect::fit(&request, held.map(|held| &held.rect));
+    let least_range = rect.texel.max_element().max(spacing.least_depth());
+    let nearest_allowed = highest_receiver + MAX_TEXELS_TO_NEAR * rect.texel.max_element();
+    let depth = |near: f64| {
+        DepthRange::fit(
+            covered.min.z,
+            near,
+            least_range,
+            held.map(|held| &held.depth),
+        )
+    };
+    let light_bounds = LightSpaceBounds {
+        rect,
+        depth: depth(covered.max.z),
+    };
+    // Only the part of a caster inside the extruded map rectangle counts for the near plane: the far end of a wide
+    // ground does not. The quantized light-space bounds are larger than was requested, so this also takes in casters
+    // that touch only their border.
+    let mut over_rect = HalfSpaces::default();
+    push_extruded_rect(
+        &mut over_rect,
+        &input.axes,
+        input.origin,
+        (rect.min, rect.max()),
+    );
+    let whole = casters.whole.iter().zip(input.casters);
+    let whole = whole.filter(|(caster, _)| caster.can_shadow);
+    let whole = whole.map(|(caster, bounds)| (&caster.light, bounds));
+    let parts = casters.parts.iter().map(|part| (&part.light, &part.bounds));
+    let mut nearest = covered.min.z;
+    for (light, bounds) in whole.chain(parts) {
+        let light = spacing.widest(light);
+        if light.max.z > nearest && light_bounds.holds_part_of(&light) {
+            let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
+            over_rect.visit_vertices(bounds, |vertex| {
+                let z = input.axes.toward_light().dot(input.origin + vertex);
+                lowest = lowest.min(z);
+                highest = highest.max(z);
+            });
+            let surrounds_receivers = lowest <= covered.min.z && highest >= highest_receiver;
+            nearest = nearest.max(if surrounds_receivers {
+                highest.min(nearest_allowed)
+            } else {
+                highest
+            });
+        }
+    }
+    Some(LightSpaceBounds {
+        depth: depth(nearest),
+        ..light_bounds
+    })
+}
+
+/// Returns the light-space box of all that can shadow receivers in `required`, or `None` where nothing can.
+///
+/// A part that rises above its receivers by less than the gap that the bias may leave anyway shadows nothing that could
+/// be seen; so a carpet on a ground does not make the map cover it. `gap_share` is that gap as a share of the side of
+/// what the map covers.
+fn shadow_box(
+    casters: &CascadeCasters<'_>,
+    required: &LightBox,
+    spacing: Spacing,
+    gap_share: f64,
+) -> Option<LightBox> {
+    let reaches = |light: &LightBox| {
+        let light = spacing.widest(light);
+        light.max.z > required.min.z && light.overlaps_xy(required)
+    };
+    let mut shadows = LightBox::EMPTY;
+    for caster in casters.whole.iter().filter(|caster| caster.can_shadow) {
+        if reaches(&caster.light) {
+            shadows.union(&caster.light);
+        }
+    }
+    for part in casters.parts.iter().filter(|part| reaches(&part.light)) {
+        let mut grown = shadows;
+        grown.union(&part.light);
+        let side = grown
+            .intersection_xy(required)
+            .map_or(0.0, |all| all.widest_side());
+        if part.height < gap_share * side {
+            break;
+        }
+        shadows = grown;
+    }
+    (!shadows.is_empty()).then_some(shadows)
+}
+
+/// Returns the light-space depths of the farthest and the nearest receiver, seen from the light, within the sides of
+/// `covered`; `None` where there is none.
+fn depths_over(
+    input: &FitInput<'_>,
+    (seen, between): (&[Seen], Option<(f64, f64)>),
+    covered: &LightBox,
+) -> Option<(f64, f64)> {
+    let mut over = HalfSpaces::default();
+    let sides = (covered.min.truncate(), covered.max.truncate());
+    push_extruded_rect(&mut over, &input.axes, input.origin, sides);
+    let mut depths = (f64::INFINITY, f64::NEG_INFINITY);
+    let mut include = |z: f64| depths = (depths.0.min(z), depths.1.max(z));
+    match input.region {
+        Region::Bounds(_) => {}
+        Region::Everything => {
+            for (bounds, _) in input.receivers.iter() {
+                over.visit_vertices(bounds, |vertex| {
+                    include(input.axes.toward_light().dot(input.origin + vertex));
+                });
+            }
+        }
+        Region::Cameras(cameras) => {
+            let between = between?;
+            for camera in cameras.iter().enumerate() {
+                let over = &over;
+                visible::visit_between(camera, seen, between, over, |vertex| {
+                    include(input.axes.toward_light().dot(input.origin + vertex));
+                });
+            }
+        }
+    }
+    (depths.0 <= depths.1).then_some(depths)
+}

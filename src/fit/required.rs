@@ -1,0 +1,128 @@
+//! Determines which part of light space each cascade of a directional light must cover.
+
+use glam::DVec3;
+
+use crate::fit::axes::LightBox;
+use crate::fit::camera::CameraFrustum;
+use crate::fit::directional_input::{FitInput, FitLimits, Region};
+use crate::fit::footprint::Slice;
+use crate::fit::spacing::Spacing;
+use crate::fit::stability::Stability;
+use crate::fit::visible::{self, Seen, SeenBounds};
+use crate::{Aabb, ShadowError};
+
+/// Returns how finely f64 distinguishes positions in `required`, if that is fine enough for the map of a cascade.
+pub(crate) fn checked_spacing(
+    input: &FitInput<'_>,
+    limits: &FitLimits,
+    slice: Option<&Slice<'_>>,
+    required: &LightBox,
+) -> Result<Spacing, ShadowError> {
+    let spacing = Spacing::around(input.origin, required);
+    let extent = || match slice {
+        // This is the extent of the slice, not of what is seen: that may be a corner of an object, which needs no finer
+        // texels than the rest of the image.
+        Some(slice) if limits.stability == Stability::TightFit => {
+            let (depth_near, depth_far) = slice.between;
+            let sphere = slice.camera.slice_sphere(depth_near, depth_far);
+            (2.0 * sphere.radius).min(widest_given(input))
+        }
+        _ => required.widest_side(),
+    };
+    let floor = input.texel_floor(required, required.max.z);
+    let distance = input.render_reach(required, required.max.z);
+    spacing.checked(extent, limits.map_size, floor, distance)
+}
+
+/// Returns the wider side, seen from the light, of all casters and receivers of the frame together.
+fn widest_given(input: &FitInput<'_>) -> f64 {
+    let given = input.casters.iter().chain(input.receivers.bounds);
+    let given = given
+        .filter(|bounds| !bounds.is_empty())
+        .fold(Aabb::EMPTY, |all, bounds| all.union(*bounds));
+    input.axes.light_box(&given, DVec3::ZERO).widest_side()
+}
+
+/// Returns cascade `cascade` of the first camera's view. Returns `None` without a camera, or where its depths contain
+/// nothing. All cameras are divided at the same depths.
+pub(crate) fn camera_slice<'a>(
+    input: &FitInput<'a>,
+    limits: &FitLimits,
+    visible: &'a SeenBounds,
+    cascade: usize,
+) -> Option<Slice<'a>> {
+    let Region::Cameras(cameras) = input.region else {
+        return None;
+    };
+    let camera = cameras.first()?;
+    let (near, far) = match limits.stability {
+        Stability::TightFit => (visible.depth_near, visible.depth_far),
+        Stability::BoundingSphere => {
+            let ranges = cameras.iter().map(CameraFrustum::depth_range);
+            ranges.fold((f64::INFINITY, f64::NEG_INFINITY), |all, range| {
+                (all.0.min(range.0), all.1.max(range.1))
+            })
+        }
+    };
+    let end = |index| limits.split.depth(index, limits.cascades, near, far);
+    let between = (end(cascade), end(cascade + 1));
+    // An explicit end before all that is seen leaves its cascade empty.
+    let is_empty = between.0 == between.1 && near < far;
+    (!is_empty).then_some(Slice {
+        camera,
+        visible,
+        between,
+    })
+}
+
+/// Returns the light-space box of the receivers that cascade `cascade` is for, or `None` where there are none.
+pub(crate) fn required_box(
+    input: &FitInput<'_>,
+    limits: &FitLimits,
+    slice: Option<&Slice<'_>>,
+    seen: &[Seen],
+    cascade: usize,
+) -> Option<LightBox> {
+    let mut required = LightBox::EMPTY;
+    let of_box = |bounds: &Aabb| input.axes.light_box(bounds, input.origin);
+    match input.region {
+        Region::Bounds(bounds) if cascade == 0 && !bounds.is_empty() => {
+            required = of_box(&bounds);
+        }
+        Region::Everything if cascade == 0 => {
+            let receivers = input.receivers.iter();
+            receivers.for_each(|(bounds, _)| required.union(&of_box(bounds)));
+        }
+        Region::Bounds(_) | Region::Everything => {}
+        Region::Cameras(cameras) => {
+            let between = slice?.between;
+            let (axes, origin) = (&input.axes, input.origin);
+            for camera in cameras.iter().enumerate() {
+                let seen = visible::light_box_between(camera, seen, between, axes, origin);
+                if seen.is_empty() {
+                    continue;
+                }
+                required.union(&match limits.stability {
+                    Stability::TightFit => seen,
+                    Stability::BoundingSphere => around_slice(input, camera.1, between, seen),
+                });
+            }
+        }
+    }
+    (!required.is_empty()).then_some(required)
+}
+
+/// Returns a box with the depths of `seen` and the whole width of a slice's sphere.
+fn around_slice(
+    input: &FitInput<'_>,
+    camera: &CameraFrustum,
+    between: (f64, f64),
+    seen: LightBox,
+) -> LightBox {
+    let sphere = camera.slice_sphere(between.0, between.1);
+    let center = input.axes.light_from_world * (input.origin + sphere.center_render);
+    LightBox {
+        min: (center - sphere.radius).with_z(seen.min.z),
+        max: (center + sphere.radius).with_z(seen.max.z),
+    }
+}
