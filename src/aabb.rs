@@ -52,10 +52,14 @@ impl Aabb {
     }
 
     /// The box of the eight transformed corners: holds the transformed geometry for every affine `target_from_source`. An empty
-    /// box stays empty. The box is broken where this one is, and where the matrix makes a corner NaN.
+    /// box stays empty. The box is broken where this one is, and where the matrix makes a corner NaN; an infinite box stays
+    /// infinite, on all axes.
     pub fn transformed(self, target_from_source: &Mat4) -> Self {
         if self.is_empty() {
             return Self::EMPTY;
+        }
+        if !self.is_finite() && !self.is_nan() {
+            return Self::new(Vec3::NEG_INFINITY, Vec3::INFINITY);
         }
         Self::from_points(
             (0..8).map(|corner| target_from_source.transform_point3(self.corner(corner))),

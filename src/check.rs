@@ -47,20 +47,13 @@ pub(crate) fn direction(field: &'static str, value: DVec3) -> Result<(), ShadowE
     Ok(())
 }
 
-pub(crate) fn bounds(field: &'static str, index: usize, bounds: &Aabb) -> Result<(), ShadowError> {
+pub(crate) fn bounds(field: &'static str, bounds: &Aabb) -> Result<(), ShadowError> {
     // Empty bounds stand for nothing and may be infinite; NaN compares false and is not empty.
     if bounds.is_empty() || bounds.is_finite() {
         return Ok(());
     }
     Err(ShadowError::BoundsNotFinite {
         field,
-        index,
         value: format!("{}..{}", bounds.min, bounds.max),
     })
-}
-
-pub(crate) fn receiver_bounds(field: &'static str, list: &[Aabb]) -> Result<(), ShadowError> {
-    list.iter()
-        .enumerate()
-        .try_for_each(|(index, item)| bounds(field, index, item))
 }

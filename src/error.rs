@@ -79,13 +79,11 @@ pub enum ShadowError {
         /// Path of the field.
         field: &'static str,
     },
-    /// Bounds with a NaN or infinite corner. (Bounds with `min > max` are empty and are passed over without an error.)
-    #[error("{field}[{index}] must have finite corners, got {value}")]
+    /// A covered box with a NaN or infinite corner. (Bounds with `min > max` are empty and are passed over without an error.)
+    #[error("{field} must have finite corners, got {value}")]
     BoundsNotFinite {
-        /// Path of the list.
+        /// Path of the field.
         field: &'static str,
-        /// Position in the list.
-        index: usize,
         /// The bounds, formatted.
         value: String,
     },

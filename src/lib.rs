@@ -116,6 +116,7 @@ pub mod pool {
 
 /// What lights did in a frame, and how fine their maps are.
 pub mod report {
+    pub use crate::cast::BrokenBounds;
     pub use crate::fit::SliceReport;
     pub use crate::receive::{ShadowReport, ViewReport, ViewStatus};
 }

@@ -55,9 +55,9 @@ impl Revision {
 /// takes part in.
 pub trait ShadowCaster {
     /// Returns the bounds, in render space and world units, of everything that [`ShadowCaster::draw`] may draw,
-    /// displacement included. The bounds are used to fit the maps and to cull. They must be finite or empty: other
-    /// bounds make [`ShadowScene::frame`](crate::ShadowScene::frame) return
-    /// [`ShadowError::BoundsNotFinite`](crate::ShadowError::BoundsNotFinite). Empty bounds cast nothing. Bounds that
+    /// displacement included. The bounds are used to fit the maps and to cull. They must be finite or empty: a
+    /// caster with other bounds is left out of the frame, and
+    /// [`ShadowFrame::broken_bounds`](crate::ShadowFrame::broken_bounds) names it. Empty bounds cast nothing. Bounds that
     /// are too small lose the shadow of the geometry outside them at times; bounds that are too large cost resolution
     /// and draws.
     fn bounds(&self) -> Aabb;

@@ -1,8 +1,8 @@
 //! Holds the casters of a frame with the values that their methods returned.
 
+use crate::Aabb;
 use crate::cast::{Revision, ShadowCaster};
 use crate::fit::CasterShape;
-use crate::{Aabb, ShadowError, check};
 
 /// Holds what the methods of a caster returned in a frame, apart from its bounds.
 #[derive(Clone, Copy, Debug)]
@@ -11,6 +11,36 @@ pub(crate) struct CasterFacts {
     pub triangles: u32,
     pub same_in_every_view: bool,
     pub keeps_pass_state: bool,
+}
+
+/// Names bounds of a frame that are not finite, or not numbers. What they bound is left out: it neither casts nor
+/// receives, and everything else keeps its shadows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct BrokenBounds {
+    /// Is the path of the list: `ShadowFrameDescriptor::casters` or `ShadowFrameDescriptor::receivers`.
+    pub field: &'static str,
+    /// Is the position in the list.
+    pub index: usize,
+    /// Is the value that was given.
+    pub bounds: Aabb,
+}
+
+/// Returns the bounds if they are finite or empty. Otherwise adds them to `broken` and returns empty ones.
+pub(crate) fn sound_bounds(
+    (field, index): (&'static str, usize),
+    bounds: Aabb,
+    broken: &mut Vec<BrokenBounds>,
+) -> Aabb {
+    if bounds.is_empty() || bounds.is_finite() {
+        return bounds;
+    }
+    broken.push(BrokenBounds {
+        field,
+        index,
+        bounds,
+    });
+    Aabb::EMPTY
 }
 
 /// Holds the casters of a frame. Each of their methods but `pipeline` and `draw` is called once a frame, and all views
@@ -26,6 +56,8 @@ pub(crate) struct FrameCasters<'a> {
     pub facts: &'a [CasterFacts],
     /// Is the path of the list in the caller's frame, for errors.
     pub field: &'static str,
+    /// Holds the bounds of the frame that were left out.
+    pub broken: &'a [BrokenBounds],
 }
 
 impl<'a> FrameCasters<'a> {
@@ -54,19 +86,19 @@ pub(crate) struct CasterAnswers {
 
 impl CasterAnswers {
     /// Queries all casters, and calls `receives` with index and bounds of those that receive. `field` is the path of the
-    /// list in the caller's frame.
+    /// list in the caller's frame. Bounds that are not finite are added to `broken`.
     pub fn ask<'a>(
         &'a mut self,
         field: &'static str,
         casters: &'a [&'a dyn ShadowCaster],
+        broken: &'a mut Vec<BrokenBounds>,
         mut receives: impl FnMut(u32, Aabb),
-    ) -> Result<FrameCasters<'a>, ShadowError> {
+    ) -> FrameCasters<'a> {
         self.bounds.clear();
         self.shapes.clear();
         self.facts.clear();
         for (index, caster) in casters.iter().enumerate() {
-            let bounds = caster.bounds();
-            check::bounds(field, index, &bounds)?;
+            let bounds = sound_bounds((field, index), caster.bounds(), broken);
             if caster.receives() {
                 receives(index as u32, bounds);
             }
@@ -80,12 +112,13 @@ impl CasterAnswers {
                 keeps_pass_state: caster.keeps_pass_state(),
             });
         }
-        Ok(FrameCasters {
+        FrameCasters {
             casters,
             bounds: &self.bounds,
             shapes: &self.shapes,
             facts: &self.facts,
             field,
-        })
+            broken,
+        }
     }
 }

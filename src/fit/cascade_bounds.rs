@@ -12,9 +12,9 @@ use crate::fit::visible::{self, Seen};
 
 /// Is the largest distance in texels from the highest receiver to the near plane for the sake of casters whose bounds
 /// reach from there to below all receivers. So one object with bounds of a million kilometres does not take the depth's
-/// precision from all others: depths are f32, and their rounding comes to six texels at this range. It is 168 km for
-/// texels of one centimetre; of such casters, what is nearer to the light casts nothing.
-const MAX_TEXELS_TO_NEAR: f64 = (1 << 24) as f64;
+/// precision from all others: depths are f32, and their rounding comes to one and a half texels at this range. It is 42
+/// km for texels of one centimetre; of such casters, what is nearer to the light casts nothing.
+const MAX_TEXELS_TO_NEAR: f64 = (1 << 22) as f64;
 
 /// Is the largest share of a map's side that the height of a part above its receivers must reach to make the map cover
 /// the part: coarse maps show shadows that are smaller than the gap that the bias admits.
@@ -110,23 +110,25 @@ pub(crate) fn fit_bounds(
     );
     let whole = casters.whole.iter().zip(input.casters);
     let whole = whole.filter(|(caster, _)| caster.can_shadow);
-    let whole = whole.map(|(caster, bounds)| (&caster.light, bounds));
-    let parts = casters.parts.iter().map(|part| (&part.light, &part.bounds));
+    let whole = whole.map(|(caster, bounds)| (&caster.light, bounds, &caster.light));
+    let parts = casters.parts.iter().map(|part| {
+        let of = &casters.whole[part.caster as usize];
+        (&part.light, &part.bounds, &of.light)
+    });
     let mut nearest = covered.min.z;
-    for (light, bounds) in whole.chain(parts) {
+    for (light, bounds, whole_light) in whole.chain(parts) {
         let light = spacing.widest(light);
         if light.max.z > nearest && light_bounds.holds_part_of(&light) {
-            let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
+            let surrounds_receivers =
+                whole_light.min.z <= covered.min.z && whole_light.max.z >= nearest_allowed;
+            let limit = if surrounds_receivers {
+                nearest_allowed
+            } else {
+                f64::INFINITY
+            };
             over_rect.visit_vertices(bounds, |vertex| {
                 let z = input.axes.toward_light().dot(input.origin + vertex);
-                lowest = lowest.min(z);
-                highest = highest.max(z);
-            });
-            let surrounds_receivers = lowest <= covered.min.z && highest >= highest_receiver;
-            nearest = nearest.max(if surrounds_receivers {
-                highest.min(nearest_allowed)
-            } else {
-                highest
+                nearest = nearest.max(z.min(limit));
             });
         }
     }

@@ -285,10 +285,15 @@ impl DirectionalShadow {
     }
 }
 
+/// Is how many times the rounding of a single coordinate the depths of a large triangle are off: the sum of products
+/// that gives a corner's depth is rounded, and the interpolation between corners once more.
+const LARGE_TRIANGLE_ROUNDING: f64 = 2.0;
+
 /// Returns the largest render coordinate from which depths in the view are computed. Rasterisers interpolate between
 /// the corners of a triangle, and each is rounded where it is: a triangle that is larger than the view brings the
 /// rounding of corners far outside it. The size of a caster's triangles is taken to be that of as many equal ones that
-/// cover its bounds, or its bounds where their number is not known.
+/// cover its bounds, or its bounds where their number is not known. Bounds on all sides of the view say nothing: they are
+/// those of a terrain that is made of many triangles, or wrong.
 fn depth_reach(
     view: &ShadowView,
     input: &FitInput<'_>,
@@ -296,13 +301,20 @@ fn depth_reach(
     drawn: &[u32],
 ) -> f64 {
     let mut reach = view.render_reach();
+    let radius = reach - f64::from(view.anchor_render().abs().max_element());
+    let center = view.anchor_render().as_dvec3();
     for &caster in drawn {
         let bounds = &input.casters[caster as usize];
-        let farthest = f64::from(bounds.min.abs().max(bounds.max.abs()).max_element());
+        let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+        if min.cmplt(center - radius).all() && max.cmpgt(center + radius).all() {
+            continue;
+        }
+        let farthest = bounds.min.abs().max(bounds.max.abs()).as_dvec3().length();
+        let farthest = LARGE_TRIANGLE_ROUNDING * farthest;
         if farthest <= reach {
             continue;
         }
-        let diagonal = (bounds.max.as_dvec3() - bounds.min.as_dvec3()).length();
+        let diagonal = (max - min).length();
         let pairs = f64::from(casters.facts(caster).triangles.max(2)) * 0.5;
         reach = farthest
             .min(view.render_reach() + diagonal / pairs.sqrt())

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::cast::{CasterAnswers, FrameCasters, ShadowCaster};
+use crate::cast::{BrokenBounds, CasterAnswers, FrameCasters, ShadowCaster, sound_bounds};
 use crate::check;
 use crate::fit::{CameraFrustum, HalfSpaces, Region};
 use crate::{Aabb, CameraView, ShadowError};
@@ -42,6 +42,7 @@ pub struct ShadowFrameDescriptor<'d, 'c> {
 #[derive(Debug, Default)]
 pub struct ShadowScene {
     answers: CasterAnswers,
+    broken: Vec<BrokenBounds>,
     receivers: Vec<Aabb>,
     receiver_casters: Vec<Option<u32>>,
     cameras: Vec<CameraFrustum>,
@@ -58,7 +59,8 @@ impl ShadowScene {
     /// here what it is; while the lights are recorded it is only drawn.
     ///
     /// # Errors
-    /// [`ShadowError`] for an origin, camera or box that is not finite or describes no volume.
+    /// [`ShadowError`] for an origin, camera or covered box that is not finite or describes no volume. Bounds of casters and
+    /// receivers that are not finite are no error: [`ShadowFrame::broken_bounds`] names them.
     pub fn frame<'a>(
         &'a mut self,
         descriptor: &ShadowFrameDescriptor<'_, 'a>,
@@ -69,7 +71,7 @@ impl ShadowScene {
         match descriptor.coverage {
             Coverage::Everything => self.seen.push(HalfSpaces::default()),
             Coverage::Bounds(bounds) => {
-                check::bounds("ShadowFrameDescriptor::coverage", 0, &bounds)?;
+                check::bounds("ShadowFrameDescriptor::coverage", &bounds)?;
                 if !bounds.is_empty() {
                     self.seen.push(HalfSpaces::of_box(&bounds));
                 }
@@ -82,19 +84,24 @@ impl ShadowScene {
                 }
             }
         }
-        check::receiver_bounds("ShadowFrameDescriptor::receivers", descriptor.receivers)?;
+        self.broken.clear();
         self.receivers.clear();
-        self.receivers.extend_from_slice(descriptor.receivers);
+        let given = descriptor.receivers.iter().enumerate();
+        self.receivers.extend(given.map(|(index, bounds)| {
+            let place = ("ShadowFrameDescriptor::receivers", index);
+            sound_bounds(place, *bounds, &mut self.broken)
+        }));
         self.receiver_casters.clear();
         self.receiver_casters.resize(self.receivers.len(), None);
         let casters = self.answers.ask(
             "ShadowFrameDescriptor::casters",
             descriptor.casters,
+            &mut self.broken,
             |caster, bounds| {
                 self.receivers.push(bounds);
                 self.receiver_casters.push(Some(caster));
             },
-        )?;
+        );
         Ok(ShadowFrame {
             origin: descriptor.origin,
             region: match descriptor.coverage {
@@ -125,6 +132,13 @@ pub struct ShadowFrame<'a> {
 }
 
 impl ShadowFrame<'_> {
+    /// Returns the bounds that are infinite or not numbers. Casters and receivers with such bounds are left out of the
+    /// frame, which is otherwise as it would be without them: in a running engine, one broken object must not take the
+    /// shadows of all others. Each light's report names them as well.
+    pub fn broken_bounds(&self) -> &[BrokenBounds] {
+        self.casters.broken
+    }
+
     /// Returns where the first camera stands, in render space.
     pub(crate) fn viewer_render(&self) -> Option<Vec3> {
         match self.region {

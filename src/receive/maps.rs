@@ -306,6 +306,8 @@ impl ShadowMaps {
             }
         });
         self.report.bytes_held = self.map.bytes() + self.recorder.bytes();
+        self.report.broken_bounds.clear();
+        self.report.broken_bounds.extend_from_slice(casters.broken);
         self.report.views.clear();
         self.report.views.extend(reports);
     }

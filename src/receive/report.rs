@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use crate::report::SliceReport;
+use crate::report::{BrokenBounds, SliceReport};
 
 /// What became of a view in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,6 +71,8 @@ impl ViewReport {
 pub struct ShadowReport {
     /// One entry per view, in the order of the frame's lights and of the layers of each.
     pub views: Vec<ViewReport>,
+    /// The frame's bounds that are infinite or not numbers. What they bound is left out, without a shadow.
+    pub broken_bounds: Vec<BrokenBounds>,
     /// Depth passes recorded: one per drawn view, two where what stands still was drawn into a layer of its own first; a single
     /// one for all faces of a point light where that is cheaper ([`OmniShadow`](crate::OmniShadow) tells when).
     pub passes: u32,
@@ -120,6 +122,7 @@ mod tests {
         };
         let report = ShadowReport {
             views: vec![view(0, 1), view(u32::MAX, 0), view(7, 2)],
+            broken_bounds: Vec::new(),
             passes: 3,
             bytes_held: 0,
         };

@@ -123,7 +123,6 @@ fn frames_that_are_refused_change_nothing() {
         rule: "above 0 (infinity allowed)",
         value: value.to_owned(),
     };
-    let spoilt = [Aabb::new(Vec3::splat(f32::NAN), Vec3::ONE)];
     let position = "OmniLight::position_world";
     let cases = [
         (
@@ -144,17 +143,6 @@ fn frames_that_are_refused_change_nothing() {
         (reaching(0.0), range("0")),
         (reaching(-2.5), range("-2.5")),
         (reaching(f32::NAN), range("NaN")),
-        (
-            OmniFrame {
-                receivers: &spoilt,
-                ..good
-            },
-            ShadowError::BoundsNotFinite {
-                field: "ShadowFrameDescriptor::receivers",
-                index: 0,
-                value: "[NaN, NaN, NaN]..[1, 1, 1]".to_owned(),
-            },
-        ),
     ];
     for (frame, wanted) in cases {
         let before = (

@@ -18,7 +18,13 @@ const TOPICS: [(&str, &[&str]); 8] = [
     ("Contact", &["contact", "wall_foot", "layers"]),
     (
         "Casters",
-        &["thin_casters", "meshes", "engine_wgsl", "near_plane"],
+        &[
+            "thin_casters",
+            "meshes",
+            "engine_wgsl",
+            "near_plane",
+            "grounds",
+        ],
     ),
     (
         "Spot and point lights",

@@ -90,18 +90,12 @@ fn bounds_without_volume_or_without_end() {
             Aabb::new(Vec3::ZERO, Vec3::INFINITY),
         ];
         for bounds in endless {
-            let as_caster = frame(&mut sun, down, coverage, bounds, &floor);
-            let as_receiver = frame(&mut sun, down, coverage, flat, &[bounds]);
-            let fields = [
-                "ShadowFrameDescriptor::casters",
-                "ShadowFrameDescriptor::receivers",
-            ];
-            for (result, wanted) in [as_caster, as_receiver].into_iter().zip(fields) {
-                assert!(
-                    matches!(&result, Err(ShadowError::BoundsNotFinite { field, .. }) if *field == wanted),
-                    "{bounds:?}: {result:?}"
-                );
-            }
+            // A broken caster casts nothing, and a broken receiver costs nothing.
+            let as_caster = frame(&mut sun, down, coverage, bounds, &floor).expect("left out");
+            assert_eq!(as_caster, (ViewStatus::Empty, vec![1.0, 1.0]), "{bounds:?}");
+            let with_floor = [bounds, floor[0]];
+            let as_receiver = frame(&mut sun, down, coverage, flat, &with_floor).expect("left out");
+            assert_eq!(as_receiver.1, [0.0, 1.0], "{bounds:?}");
         }
         // The largest numbers there are: a fit that can be expressed, or an error that says it cannot.
         let huge = Aabb::new(Vec3::splat(-f32::MAX), Vec3::splat(f32::MAX));
@@ -127,7 +121,7 @@ fn bounds_without_volume_or_without_end() {
     assert_eq!((status, seen), (ViewStatus::Empty, vec![1.0, 1.0]));
     table::record(
         "flat, point, empty and endless bounds",
-        "flat bounds cast, empty ones are passed over, endless ones are refused by name",
+        "flat bounds cast, empty ones are passed over, endless ones are left out",
         "as expected, by box and by camera",
     );
 }

@@ -16,6 +16,7 @@ mod fuzz_casters;
 mod fuzz_pools;
 mod fuzz_reference;
 mod fuzz_values;
+mod grounds;
 mod layers;
 mod light_axes;
 mod long_run;

@@ -1,0 +1,302 @@
+//! Grounds of any size that cast, with feet on and in them, and other objects that are far larger than what they shadow.
+
+use glam::{DVec3, Mat4, Vec3};
+use wgpu_shadows::caster::caster_shape;
+use wgpu_shadows::{Aabb, DirectionalShadowDescriptor, MeshCaster, ShadowCaster};
+
+use super::stage::{SUM_ERROR, Sun, Verdict, differ, shining};
+use super::table;
+use crate::support::camera::Camera;
+use crate::support::frames::Coverage;
+use crate::support::gpu::gpu;
+use crate::support::probe::Point;
+use crate::support::random::Random;
+use crate::support::scene::{Mesh, Triangle, default_pipeline, occluded};
+use crate::support::watched::Watched;
+
+const LIGHT: DVec3 = DVec3::new(0.527, -0.738, -0.4216);
+const LOW_LIGHT: DVec3 = DVec3::new(0.93, -0.31, -0.2);
+
+/// Half sides of grounds, from a room to a county.
+const HALF_SIDES: [f32; 6] = [2.0, 5.0, 50.0, 500.0, 5e3, 5e4];
+
+/// A robot of 0.8 m whose feet are `sunk` below the ground, and the ground: a sheet, or a slab of some thickness.
+fn meshes(half: f32, thickness: f32, sunk: f32) -> Vec<Mesh> {
+    let ground = if thickness == 0.0 {
+        Mesh::floor(0.0, half)
+    } else {
+        Mesh::cuboid(
+            Vec3::new(-half, -thickness, -half),
+            Vec3::new(half, 0.0, half),
+        )
+    };
+    vec![
+        ground,
+        Mesh::cuboid(Vec3::new(-0.1, -sunk, -0.1), Vec3::new(0.1, 0.4, 0.1)),
+        Mesh::cuboid(Vec3::new(-0.2, 0.4, -0.15), Vec3::new(0.2, 0.8, 0.15)),
+        Mesh::cuboid(Vec3::new(0.2, 0.7, -0.03), Vec3::new(0.6, 0.76, 0.03)),
+    ]
+}
+
+/// Casters that say what their meshes allow.
+fn casters(meshes: &[Mesh]) -> Vec<MeshCaster> {
+    let pipeline = default_pipeline(gpu());
+    let caster = |mesh: &Mesh| {
+        let mut caster = mesh.caster(gpu(), &pipeline, Mat4::IDENTITY);
+        caster.set_shape(caster_shape(&mesh.positions, &mesh.indices));
+        caster
+    };
+    meshes.iter().map(caster).collect()
+}
+
+fn triangles(meshes: &[Mesh]) -> Vec<Triangle> {
+    let of = |mesh: &Mesh| mesh.triangles(&Mat4::IDENTITY);
+    meshes.iter().flat_map(of).collect()
+}
+
+fn listed(casters: &[MeshCaster]) -> Vec<&dyn ShadowCaster> {
+    casters
+        .iter()
+        .map(|caster| caster as &dyn ShadowCaster)
+        .collect()
+}
+
+fn near_camera() -> Camera {
+    Camera::modern(
+        DVec3::new(1.5, 1.4, 2.2),
+        DVec3::new(0.0, 0.4, 0.0),
+        0.8,
+        1.78,
+    )
+}
+
+/// Three texels of 2 mm, stretched by the slant of the light. The map of the robot alone has finer ones.
+const SETTLED: f64 = 0.012;
+
+/// Compares what the sun shows of the ground around the robot with rays. A receiver is settled where rays from `margin` around
+/// agree. `triangles` leaves the ground out, whose own rounding at far corners would decide.
+fn around_robot(sun: &Sun, triangles: &[Triangle], light: DVec3, margin: f64) -> Verdict {
+    let mut random = Random::new(5);
+    let camera = near_camera();
+    let (low, high) = (DVec3::new(-1.5, 0.0, -1.5), DVec3::new(1.5, 0.0, 1.5));
+    let mut verdict = Verdict::default();
+    let (mut points, mut truths) = (Vec::new(), Vec::new());
+    while points.len() < 3000 {
+        let place = random.point(low, high).as_vec3().as_dvec3();
+        if !camera.sees(place, f64::INFINITY, 0.01) {
+            continue;
+        }
+        let dark = |at: DVec3| occluded(triangles, at, -light, 0.0);
+        let here = dark(place);
+        let settled = (0..12).all(|step| {
+            let angle = f64::from(step) * std::f64::consts::TAU / 12.0;
+            dark(place + DVec3::new(angle.cos(), 0.0, angle.sin()) * margin) == here
+        });
+        points.push(Point::rounded(place, DVec3::Y));
+        truths.push(settled.then_some(here));
+    }
+    for (truth, seen) in truths.iter().zip(sun.ask(&points)) {
+        verdict.count(*truth, seen);
+    }
+    verdict
+}
+
+/// One cascade, everything default, a camera without a far limit: the robot's shadow is as fine on ten kilometres as in a room.
+#[test]
+fn a_ground_of_any_size_leaves_shadows_sharp() {
+    let mut all = Verdict::default();
+    let mut coarsest = 0.0_f64;
+    for half in HALF_SIDES {
+        for (thickness, sunk) in [
+            (0.0, 0.0),
+            (0.0, 0.001),
+            (0.0, 0.02),
+            (0.1, 0.001),
+            (1.0, 0.0),
+        ] {
+            let meshes = meshes(half, thickness, sunk);
+            let casters = casters(&meshes);
+            let mut sun = Sun::new(&DirectionalShadowDescriptor::default());
+            let coverage = Coverage::Camera(near_camera().view());
+            sun.record(
+                DVec3::ZERO,
+                shining(LIGHT),
+                coverage,
+                &listed(&casters),
+                &[],
+            );
+            coarsest = coarsest.max(sun.texel());
+            let verdict = around_robot(&sun, &triangles(&meshes[1..]), LIGHT, SETTLED);
+            let words = format!("half side {half}, {thickness} thick, feet {sunk} below");
+            verdict.assert_right(&words);
+            all.add(&verdict);
+        }
+    }
+    // In a map of 2048 texels, the robot and its shadow, 1.3 m, come to 0.6 mm and a size step.
+    assert!(coarsest < 1.2e-3, "{coarsest}");
+    table::record(
+        "a robot of 0.8 m on grounds of half side 2 to 5e4 that cast: sheets and slabs, feet on and in them",
+        "settled receivers as the truth says, texels below 1.2 mm",
+        format!("{}, texels up to {:.2} mm", all.words(), coarsest * 1e3),
+    );
+}
+
+/// A ground of two triangles does not shadow itself, however far away its corners are, whether a map follows a camera or is a
+/// fixed box. A foot dips into it, so that it is among the casters.
+#[test]
+fn a_giant_ground_is_lit() {
+    let mut random = Random::new(19);
+    let (mut wrong, mut lit) = (0, 0);
+    for half in [500.0_f32, 3e3, 5e3, 1e4, 7e4, 2e5] {
+        for light in [LIGHT, LOW_LIGHT, DVec3::new(0.7, -1.0, 0.02)] {
+            let meshes = meshes(half, 0.0, 0.001);
+            // Without their shapes, as an engine that says nothing has them.
+            let pipeline = default_pipeline(gpu());
+            let casters: Vec<_> = meshes
+                .iter()
+                .map(|mesh| mesh.caster(gpu(), &pipeline, Mat4::IDENTITY))
+                .collect();
+            let box_around = Aabb::new(Vec3::splat(-2.0), Vec3::splat(2.0));
+            let limited = near_camera().view().with_max_distance(100.0);
+            let coverages = [
+                (Coverage::Camera(limited), 3, 60.0),
+                (Coverage::Bounds(box_around), 1, 2.0),
+            ];
+            for (coverage, cascades, reach) in coverages {
+                let mut sun = Sun::new(&DirectionalShadowDescriptor {
+                    map_size: 1024,
+                    cascades,
+                    ..Default::default()
+                });
+                sun.record(
+                    DVec3::ZERO,
+                    shining(light),
+                    coverage,
+                    &listed(&casters),
+                    &[],
+                );
+                let triangles = triangles(&meshes);
+                let robot = &triangles[2..];
+                let places: Vec<_> = (0..2000)
+                    .map(|_| {
+                        let low = DVec3::new(-reach, 0.0, -reach);
+                        random.point(low, -low).as_vec3().as_dvec3()
+                    })
+                    // Half a metre around the robot and its shadow is left out.
+                    .filter(|place| {
+                        let around = |step: DVec3| !occluded(robot, *place + step, -light, 0.0);
+                        let steps = [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z];
+                        place.abs().max_element() > 0.6
+                            && around(DVec3::ZERO)
+                            && steps.iter().all(|step| around(*step * 0.5))
+                    })
+                    .collect();
+                let points: Vec<_> = places
+                    .iter()
+                    .map(|place| Point::rounded(*place, DVec3::Y))
+                    .collect();
+                let dark = sun
+                    .ask(&points)
+                    .into_iter()
+                    .filter(|seen| differ(*seen, 1.0, SUM_ERROR));
+                let dark = dark.count();
+                assert_eq!(
+                    dark,
+                    0,
+                    "half side {half}, light {light}, {coverage:?}, of {}",
+                    points.len()
+                );
+                wrong += dark;
+                lit += points.len();
+            }
+        }
+    }
+    assert!(lit > 10_000, "{lit}");
+    table::record(
+        "grounds of two triangles, half side 500 to 2e5, into which a foot dips",
+        "no false shadow on them, before a camera and in a fixed box",
+        format!("{wrong} of {lit} receivers"),
+    );
+}
+
+/// A sky dome that neither casts nor receives costs nothing, whatever its radius.
+#[test]
+fn a_sky_dome_leaves_shadows_alone() {
+    let mut all = Verdict::default();
+    for radius in [100.0_f32, 1e3, 1e6] {
+        let meshes = meshes(50.0, 0.0, 0.001);
+        let mut casters = casters(&meshes);
+        let dome = Mesh::sphere(Vec3::ZERO, radius, 8);
+        let mut dome = dome.caster(gpu(), &default_pipeline(gpu()), Mat4::IDENTITY);
+        dome.set_roles(false, false);
+        casters.push(dome);
+        let mut sun = Sun::new(&DirectionalShadowDescriptor::default());
+        let coverage = Coverage::Camera(near_camera().view());
+        sun.record(
+            DVec3::ZERO,
+            shining(LIGHT),
+            coverage,
+            &listed(&casters),
+            &[],
+        );
+        let verdict = around_robot(&sun, &triangles(&meshes[1..]), LIGHT, SETTLED);
+        verdict.assert_right(&format!("a dome of {radius}"));
+        all.add(&verdict);
+    }
+    table::record(
+        "sky domes of radius 100 to 1e6 that neither cast nor receive",
+        "settled receivers as the truth says, with one cascade",
+        all.words(),
+    );
+}
+
+/// One object with wild bounds, finite or not, leaves the shadows of the others in place.
+#[test]
+fn one_wild_box_leaves_other_shadows_in_place() {
+    let mut all = Verdict::default();
+    let limited = near_camera().view().with_max_distance(100.0);
+    let nan = Vec3::new(f32::NAN, 1.0, 1.0);
+    let boxes = [
+        Aabb::new(Vec3::splat(-1e5), Vec3::splat(1e5)),
+        Aabb::new(Vec3::splat(-1e6), Vec3::splat(1e6)),
+        Aabb::new(Vec3::splat(-1e9), Vec3::splat(1e9)),
+        Aabb::new(nan, Vec3::ONE),
+        Aabb::new(Vec3::ZERO, nan),
+        Aabb::new(Vec3::NEG_INFINITY, Vec3::INFINITY),
+    ];
+    for (index, bounds) in boxes.into_iter().enumerate() {
+        let mut meshes = meshes(50.0, 0.0, 0.001);
+        let casters = casters(&meshes);
+        let small = Mesh::cuboid(Vec3::new(-0.9, 0.0, -0.9), Vec3::new(-0.7, 0.2, -0.7));
+        if bounds.is_finite() {
+            // Left out otherwise.
+            meshes.push(small.clone());
+        }
+        let small = small.caster(gpu(), &default_pipeline(gpu()), Mat4::IDENTITY);
+        let wild = Watched::with_bounds(small, bounds);
+        let mut list = listed(&casters);
+        list.push(&wild);
+        let mut sun = Sun::new(&DirectionalShadowDescriptor {
+            cascades: 4,
+            ..Default::default()
+        });
+        let coverage = Coverage::Camera(limited);
+        let report = sun.record(DVec3::ZERO, shining(LIGHT), coverage, &list, &[]);
+        // The cascade around the robot has texels of 3 mm, and depths that are rounded to one and a half of them.
+        let verdict = around_robot(&sun, &triangles(&meshes[1..]), LIGHT, 2.0 * SETTLED);
+        verdict.assert_right(&format!("{bounds:?}"));
+        all.add(&verdict);
+        let named: Vec<_> = report
+            .broken_bounds
+            .iter()
+            .map(|broken| broken.index)
+            .collect();
+        let wanted: &[usize] = if index < 3 { &[] } else { &[4] };
+        assert_eq!(named, wanted, "{bounds:?}");
+    }
+    table::record(
+        "a box of +-1e5 to +-1e9, infinite or NaN for an object of 0.2 m, four cascades",
+        "settled receivers in the shadows of others as the truth says, broken bounds named",
+        all.words(),
+    );
+}
