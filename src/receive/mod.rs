@@ -10,7 +10,7 @@
 //! maps.rs          ShadowMaps: what every light owns; sampled_maps.rs: what a lookup needs of it
 //! report.rs        ShadowReport: what a light did in a frame
 //! bindings.rs      one bind group for a set of lights; layout.rs: the entries of it
-//! emit.rs          the WGSL for exactly that set
+//! emit.rs          the WGSL for exactly that set, from the templates that template.rs fills
 //! ```
 
 mod bias;
@@ -23,6 +23,7 @@ mod maps;
 pub mod reference;
 mod report;
 mod sampled_maps;
+mod template;
 mod texel_access;
 mod uniforms;
 
