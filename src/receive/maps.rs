@@ -9,6 +9,7 @@ use crate::receive::report::{ShadowReport, ViewReport, ViewStatus};
 use crate::receive::sampled_maps::{SampledMaps, Selection};
 use crate::receive::{
     Sampling, ShadowViewUniform, empty_view_uniform, endless_range, view_uniform,
+    view_uniform_bytes,
 };
 use crate::{ShadowError, ShadowView, report::SliceReport};
 
@@ -122,7 +123,7 @@ impl ShadowMaps {
             uniforms: UploadBuffer::new(
                 device,
                 &format!("{label} views"),
-                u64::from(layers) * size_of::<ShadowViewUniform>() as u64,
+                view_uniform_bytes(layers.into()),
             )?,
             sampling: descriptor.sampling,
             selection: descriptor.selection,

@@ -58,5 +58,4 @@ mod spot;
 mod spot_input;
 mod stability;
 mod texels_by_samples;
-mod uniform_layout;
 mod without_gather;

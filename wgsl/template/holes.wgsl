@@ -41,7 +41,7 @@ const FIRST_VIEW: u32 = 0u;
 const ANY_VIEW: u32 = 0u;
 
 // The bias: `plane`, `normal_offset` or `manual`.
-fn shadow_receiver_BIAS(view: ShadowView, position: vec3<f32>, normal: vec3<f32>) -> ShadowReceiver {
+fn shadow_receiver_BIAS(view: ShadowViewUniform, position: vec3<f32>, normal: vec3<f32>) -> ShadowReceiver {
     return shadow_receiver_at(view, position, position - view.anchor, vec2<f32>(0.0), 0.0);
 }
 
@@ -54,7 +54,7 @@ fn shadow_FILTER(map: MAP_TYPE, map_sampler: SAMPLER_TYPE, receiver: ShadowRecei
 fn shadow_direction_PATTERN(index: u32) -> vec3<f32> {
     return shadow_direction_grid(index);
 }
-fn shadow_direction_PATTERN_radius(view: ShadowView, position: vec3<f32>) -> f32 {
+fn shadow_direction_PATTERN_radius(view: ShadowViewUniform, position: vec3<f32>) -> f32 {
     return shadow_direction_grid_radius(view, position);
 }
 
