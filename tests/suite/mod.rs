@@ -48,6 +48,7 @@ mod pool;
 mod pool_budget;
 mod pool_importance;
 mod pool_index;
+mod promised_wgsl;
 mod receiver_parity;
 mod reference_limits;
 mod scene;
