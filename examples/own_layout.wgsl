@@ -2,9 +2,9 @@
 
 @group(1) @binding(0) var depth_sampler: sampler;
 @group(1) @binding(1) var sun_depths: texture_depth_2d_array;
-@group(1) @binding(2) var<uniform> sun_view: ShadowView;
+@group(1) @binding(2) var<uniform> sun_view: ShadowViewUniform;
 @group(1) @binding(3) var lamp_depths: texture_depth_2d_array;
-@group(1) @binding(4) var<uniform> lamp_views: array<ShadowView, 6>;
+@group(1) @binding(4) var<uniform> lamp_views: array<ShadowViewUniform, 6>;
 
 fn sunlight(position: vec3<f32>, normal: vec3<f32>) -> f32 {
     let receiver = shadow_receiver_plane(sun_view, position, normal);

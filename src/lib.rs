@@ -1,4 +1,56 @@
-#![doc = include_str!("../README.md")]
+//! Shadow mapping for engines that are built on [`wgpu`]: an engine passes in its lights, its camera and what casts shadows, and
+//! gets depth maps, a bind group, and WGSL functions that return visibility with a bias that needs no tuning.
+//!
+//! The crate creates no device, submits nothing, and does not shade. It requires no optional device feature.
+//!
+//! # Usage
+//!
+//! ```no_run
+//! use wgpu_shadows::glam::{DVec3, Vec3};
+//! use wgpu_shadows::*;
+//!
+//! struct Shadows {
+//!     scene: ShadowScene, // shared by all lights
+//!     sun: DirectionalShadow,
+//!     bindings: ShadowBindings,
+//! }
+//!
+//! impl Shadows {
+//!     /// At load time.
+//!     fn new(device: &wgpu::Device) -> Result<Self, Box<dyn std::error::Error>> {
+//!         let sun = DirectionalShadow::new(device, &DirectionalShadowDescriptor::default())?;
+//!         let lights = [("sun", sun.maps())];
+//!         let descriptor = ShadowBindingsDescriptor { group: 1, lights: &lights, ..Default::default() };
+//!         let bindings = ShadowBindings::new(device, &descriptor)?;
+//!         Ok(Self { scene: ShadowScene::new(), sun, bindings })
+//!     }
+//!
+//!     /// In every frame, before the pass that shades.
+//!     fn record(
+//!         &mut self,
+//!         encoder: &mut wgpu::CommandEncoder,
+//!         camera: CameraView,
+//!         casters: &[&dyn ShadowCaster],
+//!     ) -> Result<(), ShadowError> {
+//!         let cameras = [camera];
+//!         let coverage = Coverage::Cameras(&cameras);
+//!         let frame = ShadowFrameDescriptor { origin: DVec3::ZERO, coverage, casters, receivers: &[] };
+//!         let light = DirectionalLight::new(Vec3::new(0.4, -0.8, 0.2));
+//!         self.sun.record(encoder, &self.scene.frame(&frame)?, &light)?;
+//!         Ok(())
+//!     }
+//! }
+//! ```
+//!
+//! The engine puts [`ShadowBindings::wgsl`] in front of its own shader, [`ShadowBindings::layout`] into its pipeline layout at the
+//! index `group`, and sets [`ShadowBindings::bind_group`] there while it shades. Its fragment shader then calls
+//!
+//! ```wgsl
+//! let normal = shadow_geometric_normal(position, camera_position - position);
+//! let visibility = shadow_sun(position, normal);
+//! ```
+//!
+//! What casts implements [`ShadowCaster`], or is a [`MeshCaster`]. `examples/quickstart.rs` in the repository is a complete program.
 //!
 //! # A frame
 //!
@@ -9,66 +61,138 @@
 //! ShadowView[]     one depth render each: matrices, texel size, depth range
 //!    │  cast       decides what is kept, copied or drawn, and records the depth passes
 //!    ▼
-//! depth texture    layers: cascades of a sun, the map of a spot, six faces of a point light
+//! depth texture    layers: cascades of a sun, the map of a spot light, six faces of a point light
 //!    │  receive    bind group and WGSL: your fragment shader calls shadow_NAME(position, normal)
 //!    ▼
 //! your image       and a ShadowReport
 //! ```
 //!
-//! The lights themselves ([`DirectionalShadow`], [`SpotShadow`], [`OmniShadow`] and the pools) wire these floors together.
+//! The lights themselves ([`DirectionalShadow`], [`SpotShadow`], [`OmniShadow`] and the pools) connect these stages.
 //! `ARCHITECTURE.md` in the repository follows a light's direction and a caster's bounds through them, file by file.
 //!
-//! Everything is recorded into your encoder, in order: uniforms first, then depth passes. The encoder must be submitted before
-//! what asks for the shadows. Several frames may be recorded before one submission: each shows its own state.
+//! Everything is recorded into the engine's encoder in order: first the uniforms, then the depth passes. The encoder must be
+//! submitted before any work that samples the shadows. Several frames may be recorded before one submission; each of them shows its
+//! own state.
+//!
+//! # Which light
+//!
+//! | light | type | depth maps |
+//! |---|---|---|
+//! | the sun, the moon | [`DirectionalShadow`] | 1 to 8 cascades |
+//! | a spot light | [`SpotShadow`] | one |
+//! | a point light, or a spot light wider than [`SpotLight::WIDEST_SENSIBLE_OUTER_ANGLE`] | [`OmniShadow`] | six faces of a cube |
+//! | many spot or point lights, which come and go | [`pool::SpotShadowPool`], [`pool::OmniShadowPool`] | one or six for each slot, with a budget of views per frame |
+//!
+//! All lights of a frame are recorded with the same [`ShadowFrame`]. A sun over a scene as deep as it is wide needs one cascade; a
+//! view to the horizon needs three or four ([`DirectionalShadowDescriptor::cascades`], [`CascadeSplit`]).
+//! [`DirectionalShadowDescriptor::blend`] hides where one ends. [`ShadowMaps::report`] tells how fine the maps of the last frame are
+//! and what was drawn; [`debug::DebugView`] draws the maps.
+//!
+//! # Which filter and bias
+//!
+//! The defaults, [`Filter::Tent3`] with a sharpness of 3 and [`Bias::Auto`], suit most scenes.
+//! [`DirectionalShadowDescriptor::CHEAP`] and [`DirectionalShadowDescriptor::ACCURATE`] trade error for cost.
+//! [`Filter::Pcss`] renders the penumbrae of a light of a given size. [`Filter`] lists the cost and the reach of each filter, and
+//! `cargo run --release --example tune -- FILE.glb` measures them in a scene of your own.
+//!
+//! [`Bias::Auto`] has nothing to tune. Over a plane, ndc depth is affine in map coordinates, for orthographic and perspective views
+//! alike, so the shader transforms the receiver's tangent plane to texel space, gathers raw depths, and compares each of them with
+//! the depth of the plane at that texel, clamped so that it never lies farther from the light than the receiver. What remains is an
+//! offset for rounding, and one of a tenth of a texel. [`Bias::NormalOffset`] and [`Bias::Manual`] are the usual
+//! methods, for comparison and for engines whose images must not change.
+//!
+//! The normal must be the geometric one, of unit length, on the side that is shaded;
+//! `shadow_geometric_normal(position, toward_viewer)` computes it from screen-space derivatives. `toward_viewer` selects the side.
+//! Derivatives alone cannot, since a projection that mirrors (a planar reflection, a target whose y points down, a captured cube map)
+//! reverses them. It is any vector from the surface to the side that is looked at, of any length but zero:
+//! `camera_position - position` for a perspective camera, the reverse of the view direction for an orthographic one. An interpolated
+//! shading normal also works, but fails at silhouettes, where it points behind the facet. A normal on the wrong side pushes receivers
+//! into their own surface, which shows as acne everywhere.
 //!
 //! # What a kept map relies on
 //!
-//! A view whose light, fit and casters did not change keeps its map. A light knows what it has recorded, not what the device
-//! has done with it, so a kept map is stale where
+//! A view keeps its map while its light, its fit and its casters do not change. A light knows what it has recorded, but not what the
+//! device has executed. A kept map is therefore stale where
 //!
 //! - an encoder was dropped, or its `finish` failed because some command in it was invalid, a caster's own commands included;
 //! - encoders were submitted in another order than they were recorded in;
-//! - the encoder belongs to another device than the light (wgpu tells of it only when the encoder is finished);
-//! - something else wrote to the texture or the uniform buffer;
-//! - a caster's [`Revision`] stood still while what it draws changed.
+//! - the encoder belongs to another device than the light (wgpu reports this only when the encoder is finished);
+//! - other code wrote to the texture or to the uniform buffer;
+//! - a caster's [`Revision`] stayed the same while what it draws changed.
 //!
-//! After any but the last, call the light's `invalidate`: the next frame then draws everything. A caster that panics while it
-//! draws needs no call; the layer that it was drawn into is drawn anew by itself.
+//! After any of these but the last, call the light's `invalidate`: the next frame then draws everything. A caster that panics while
+//! it draws needs no such call; the layer that it was being drawn into is drawn again in the next frame.
 //!
-//! The engine's `origin` may move without a new revision. A kept map then carries the rounding of the render coordinates that
-//! it was drawn from; the bias allows for it, and the map is drawn anew where a new one would be more than twice as fine and
-//! the difference comes to more than 1/64 of a texel.
+//! The engine's `origin` may move without a new revision. A kept map then carries the rounding of the render coordinates from which
+//! it was drawn, and the bias allows for that rounding. The map is drawn again where the rounding exceeds both twice that of a new
+//! map and 1/64 of a texel.
 //!
-//! What may be expected of scenes and inputs that break shadow maps, and what was measured of each: [`hard_cases`].
+//! [`hard_cases`] lists scenes and inputs that break shadow maps, with what the crate promises for each and what was measured.
 //!
-//! # Spaces
+//! # Own bind groups
 //!
-//! | space | what | type |
+//! An engine that has no index left for [`ShadowBindings`] binds [`ShadowMaps::texture_view`] and [`ShadowMaps::uniform_buffer`]
+//! in a group of its own. [`shader::compose`] returns the WGSL of the modules that it names and of all that they require, and their
+//! functions take texture, sampler and view as arguments:
+//!
+//! ```
+//! let wgsl = wgpu_shadows::shader::compose(&["bias_plane", "filter_tent3"])?;
+//! let engine = "
+//!     @group(0) @binding(4) var sun_map: texture_depth_2d_array;
+//!     @group(0) @binding(5) var map_sampler: sampler; // wgpu::SamplerDescriptor::default()
+//!     @group(0) @binding(6) var<uniform> sun_views: array<ShadowViewUniform, 1>;
+//!
+//!     fn sunlight(position: vec3<f32>, normal: vec3<f32>) -> f32 {
+//!         let receiver = shadow_receiver_plane(sun_views[0], position, normal);
+//!         if !receiver.inside {
+//!             return 1.0;
+//!         }
+//!         return shadow_filter_tent3(sun_map, map_sampler, receiver);
+//!     }";
+//! # naga::front::wgsl::parse_str(&(wgsl.clone() + engine)).expect("valid WGSL");
+//! let shader = wgsl + engine;
+//! # Ok::<(), wgpu_shadows::error::BindingsError>(())
+//! ```
+//!
+//! `examples/own_layout.rs` in the repository does this for a sun and a point light. [`ShadowViewUniform`] is the Rust side of the
+//! uniforms. The function of [`Filter::Hardware`] takes a `sampler_comparison` instead, which is linear and compares by
+//! `GreaterEqual`. The [`shader`] module tells what changes on devices that cannot gather.
+//!
+//! # Cameras relative to an origin
+//!
+//! | space | definition | type |
 //! |---|---|---|
-//! | world | absolute, metres or any unit | f64 |
-//! | render | world minus your `origin` (zero by default): what your shaders see | f32 |
-//! | light | x right, y up, looking along -z, same unit | f64, inside |
-//! | clip, ndc | WebGPU's: z in \[0, 1\], y up; depth is reversed: near 1, far 0 | f32 |
-//! | texel | origin top left, centres at halves | f32 |
+//! | world | absolute coordinates, in metres or any other unit | f64 |
+//! | render | world minus the frame's `origin` (zero by default): what the engine's shaders use | f32 |
+//! | light | x right, y up, looking along -z, in the same unit | f64, internal |
+//! | clip, ndc | as WebGPU defines it: z in \[0, 1\], y up; depth is reversed: near 1, far 0 | f32 |
+//! | texel | origin at the top left, texel centres at halves | f32 |
 //!
-//! Without an origin, f32 coordinates far from zero bring their own rounding along: shadows of a scene `P` away are displaced by
-//! up to `P` / 2 000 000 (half a millimetre at 1 km, five centimetres at 100 km), and the bias gives way by as much.
+//! An engine that renders relative to its camera sets [`ShadowFrameDescriptor::origin`] to the world position that is zero in its
+//! shaders. The matrices of a [`CameraView`], the bounds of casters and receivers, and the positions that shaders pass in are in
+//! render space; the positions of lights are in world space. A map is kept while the origin moves.
 //!
-//! Matrices are named `target_from_source`; scalars carry their unit.
+//! Without an origin, f32 coordinates far from zero bring their own rounding into the shadows: shadows of a scene at distance `P`
+//! are displaced by up to `P` / 2 000 000 (half a millimetre at 1 km, five centimetres at 100 km), and the bias grows by as much.
 //!
-//! # Bias
+//! Matrices are named `target_from_source`; scalars carry their unit in their name.
 //!
-//! Ndc depth is affine in map coordinates over a plane, for orthographic and perspective views alike. With [`Bias::Auto`] the
-//! shader carries the receiver's tangent plane into texel space, gathers raw depths and compares each with the plane's own depth
-//! at that texel, clamped so that it never lies farther from the light than the receiver. What is left is rounding: see
-//! [`Bias`]. The normal must be the geometric one, of unit length, on the side that is shaded;
-//! `shadow_geometric_normal(position, toward_viewer)` makes it from derivatives.
+//! # What is promised under semver
 //!
-//! `toward_viewer` tells the side, which derivatives cannot: under a projection that mirrors (a planar reflection, a target with y
-//! downward, a captured cube) they turn around. It is any vector from the surface to the side that is looked at, of any length
-//! but zero: `camera_position - position` for a perspective camera, the reverse of the direction of view for an orthographic
-//! one. An interpolated shading normal will do too, but errs at silhouettes, where it leans behind the facet. A normal on the
-//! wrong side pushes receivers into their own surface, which shows as acne all over.
+//! Everything public follows semantic versioning, with [`wgpu`] and [`glam`] as part of the interface: a new major version of either
+//! is a breaking change here. The same holds for these names of the WGSL, with their parameters and their meaning:
+//!
+//! - of [`ShadowBindings::wgsl`]: `shadow_NAME`, `shadow_view_NAME`, `shadow_map_NAME` and `shadow_views_NAME` for each light, and
+//!   `shadow_geometric_normal`;
+//! - of [`shader::MODULES`]: the names of the modules `view`, `cube_face`, `normal`, `texels_by_samples`, `bias_*`, and `filter_*`
+//!   except `filter_direction`; of their functions `shadow_view_holds`, `shadow_cube_face`, `shadow_geometric_normal`, and
+//!   `shadow_receiver_NAME` and `shadow_filter_NAME` of a module `bias_NAME` or `filter_NAME`; and of their structs
+//!   `ShadowReceiver` with the member `inside` and `ShadowViewUniform` with the member `anchor`;
+//! - in the text of a [`caster::CasterVertex::Wgsl`]: `shadow_caster_clip`.
+//!
+//! All names that the WGSL declares begin with `shadow_`, `Shadow` or `SHADOW_`, so an engine's own names are safe if they do not.
+//! Everything else in the WGSL may change with any version: texts, other names, other members, the size and the layout of
+//! [`ShadowViewUniform`], and the numbers of bindings. So may the last digits of a visibility.
 
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
@@ -124,3 +248,8 @@ pub mod report {
 #[cfg(doc)]
 #[doc = include_str!("../doc/hard_cases.md")]
 pub mod hard_cases {}
+
+/// Compiles the code of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -2,7 +2,7 @@
 //
 // Rust twin: src/receive/reference.rs. Requires: view.
 
-fn shadow_receiver_manual(view: ShadowView, position: vec3<f32>, normal: vec3<f32>) -> ShadowReceiver {
+fn shadow_receiver_manual(view: ShadowViewUniform, position: vec3<f32>, normal: vec3<f32>) -> ShadowReceiver {
     let relative = position - view.anchor;
     let toward_light = normalize(select(view.light.xyz, -relative, view.light.w > 0.0));
     let facing = dot(normal, toward_light);

@@ -6,7 +6,7 @@
 // Rust twin: src/receive/reference.rs. Requires: view.
 
 fn shadow_receiver_normal_offset(
-    view: ShadowView,
+    view: ShadowViewUniform,
     position: vec3<f32>,
     normal: vec3<f32>,
 ) -> ShadowReceiver {

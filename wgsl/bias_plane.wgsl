@@ -9,7 +9,7 @@
 // Steeper planes than this cross the whole depth range within a fraction of a texel; the limit keeps infinity out.
 const SHADOW_MAX_GRADIENT: f32 = 1e4;
 
-fn shadow_receiver_plane(view: ShadowView, position: vec3<f32>, normal: vec3<f32>) -> ShadowReceiver {
+fn shadow_receiver_plane(view: ShadowViewUniform, position: vec3<f32>, normal: vec3<f32>) -> ShadowReceiver {
     let relative = position - view.anchor;
     let surface = shadow_plane(view, relative, normal);
     let wanted = shadow_normal_offset(view, relative, surface, view.offset_texels) + view.offset_world;

@@ -31,13 +31,13 @@ fn shadow_direction_star(index: u32) -> vec3<f32> {
 
 // Radius of the star in world units: as given close to the viewer, and wider in proportion to the distance from it, by the
 // share of the light's range, as the textbook has it. `viewer.w` is 0 where no viewer is known.
-fn shadow_direction_star_radius(view: ShadowView, position: vec3<f32>) -> f32 {
+fn shadow_direction_star_radius(view: ShadowViewUniform, position: vec3<f32>) -> f32 {
     let far = distance(position, view.viewer.xyz) / view.range;
     return view.sample_radius * (1.0 + view.viewer.w * far);
 }
 
 // Radius of the grid in world units: the same everywhere.
-fn shadow_direction_grid_radius(view: ShadowView, position: vec3<f32>) -> f32 {
+fn shadow_direction_grid_radius(view: ShadowViewUniform, position: vec3<f32>) -> f32 {
     return view.sample_radius;
 }
 

@@ -4,7 +4,7 @@
 // reversed (near 1, far 0, empty map 0).
 // Rust twins: src/receive/uniforms.rs (layout), src/receive/reference.rs (arithmetic in f64).
 
-struct ShadowView {
+struct ShadowViewUniform {
     // Homogeneous texel x, texel y, depth and w from coordinates relative to the anchor.
     texel_from_anchor: mat4x4<f32>,
     // Rows of the inverse transpose: they take a plane (normal, -normal · point) to texel space.
@@ -68,7 +68,7 @@ struct ShadowReceiver {
 
 // Does the map say anything of a place in render space: inside its sides, not beyond its far plane, in front of a local light
 // and within its cone and range? Where it does not, the place is lit.
-fn shadow_view_holds(view: ShadowView, position: vec3<f32>) -> bool {
+fn shadow_view_holds(view: ShadowViewUniform, position: vec3<f32>) -> bool {
     let relative = position - view.anchor;
     let distance_squared = dot(relative, relative);
     // The cone stands before the range for the sake of Mesa's software Vulkan driver (seen in 22.3, which Debian 12 has). It
@@ -82,7 +82,7 @@ fn shadow_view_holds(view: ShadowView, position: vec3<f32>) -> bool {
 }
 
 // The same of a directional light, which has neither cone nor range.
-fn shadow_view_covers(view: ShadowView, position: vec3<f32>) -> bool {
+fn shadow_view_covers(view: ShadowViewUniform, position: vec3<f32>) -> bool {
     let place = view.texel_from_anchor * vec4<f32>(position - view.anchor, 1.0);
     let texel = place.xy / place.w;
     let within = all(texel >= view.inner.xy) && all(texel <= view.inner.zw);
@@ -91,7 +91,7 @@ fn shadow_view_covers(view: ShadowView, position: vec3<f32>) -> bool {
 
 // Weight of a cascade at a place that it holds, where cascades blend: one, and less in the last texels before its border. Never
 // zero, so that a place in one cascade alone has a weighted mean.
-fn shadow_view_weight(view: ShadowView, position: vec3<f32>) -> f32 {
+fn shadow_view_weight(view: ShadowViewUniform, position: vec3<f32>) -> f32 {
     let place = view.texel_from_anchor * vec4<f32>(position - view.anchor, 1.0);
     let texel = place.xy / place.w;
     let from_border = min(texel - view.inner.xy, view.inner.zw - texel);
@@ -101,7 +101,7 @@ fn shadow_view_weight(view: ShadowView, position: vec3<f32>) -> f32 {
 // The receiver of a place in render space that the bias has moved to `moved`, relative to the anchor, with `depth_offset`
 // toward the light.
 fn shadow_receiver_at(
-    view: ShadowView,
+    view: ShadowViewUniform,
     position: vec3<f32>,
     moved: vec3<f32>,
     gradient: vec2<f32>,
@@ -127,7 +127,7 @@ fn shadow_receiver_at(
 }
 
 // The receiver's tangent plane in texel space: its components along texel x, texel y and depth.
-fn shadow_plane(view: ShadowView, relative: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
+fn shadow_plane(view: ShadowViewUniform, relative: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     let plane = vec4<f32>(normal, -dot(normal, relative));
     return vec3<f32>(
         dot(view.plane_across, plane),
@@ -139,7 +139,7 @@ fn shadow_plane(view: ShadowView, relative: vec3<f32>, normal: vec3<f32>) -> vec
 // World distance along the normal by which `texels` of the map displace a plane at this place: texels * s * (|nx| + |ny|) with
 // s the world size of a texel and n the normal in light space.
 fn shadow_normal_offset(
-    view: ShadowView,
+    view: ShadowViewUniform,
     relative: vec3<f32>,
     plane: vec3<f32>,
     texels: f32,
@@ -149,12 +149,12 @@ fn shadow_normal_offset(
 }
 
 // World distance of the light from a place's tangent plane; endless for a directional light.
-fn shadow_light_height(view: ShadowView, relative: vec3<f32>, normal: vec3<f32>) -> f32 {
+fn shadow_light_height(view: ShadowViewUniform, relative: vec3<f32>, normal: vec3<f32>) -> f32 {
     return select(1e30, abs(dot(normal, relative)), view.light.w > 0.0);
 }
 
 // What w is made of: one for an orthographic view, the distance along the axis for a perspective one.
-fn shadow_w_row(view: ShadowView) -> vec4<f32> {
+fn shadow_w_row(view: ShadowViewUniform) -> vec4<f32> {
     let columns = view.texel_from_anchor;
     return vec4<f32>(columns[0].w, columns[1].w, columns[2].w, columns[3].w);
 }

@@ -2,7 +2,7 @@
 //
 // Stands where the library's own `shadow_sun` stands otherwise. Requires: bias_manual.
 
-@group(1) @binding(0) var<uniform> sun_view: ShadowView;
+@group(1) @binding(0) var<uniform> sun_view: ShadowViewUniform;
 @group(1) @binding(1) var sun_map: texture_depth_2d_array;
 @group(1) @binding(2) var clamping_sampler: sampler_comparison;
 

@@ -7,7 +7,6 @@ use crate::check;
 use crate::fit::{
     DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, MAX_CASCADES, Receivers, Region,
 };
-use crate::light::layer_limits::check_layers;
 use crate::receive::{
     LayerState, MapsFrame, Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, ShadowReport,
     check_bias, check_planar_filter,
@@ -152,11 +151,6 @@ impl DirectionalShadow {
             descriptor.filter.light_size(),
         )?;
         check_bias("DirectionalShadowDescriptor::bias", descriptor.bias)?;
-        check_layers(
-            device,
-            "DirectionalShadowDescriptor::cascades",
-            descriptor.cascades.into(),
-        )?;
         let sampling = Sampling {
             filter: descriptor.filter,
             bias: descriptor.bias,
@@ -169,10 +163,11 @@ impl DirectionalShadow {
                 label: descriptor.label.unwrap_or("directional shadow"),
                 size_field: "DirectionalShadowDescriptor::map_size",
                 map_size: descriptor.map_size,
-                layers: descriptor.cascades,
+                lights: 1,
+                layers_field: "DirectionalShadowDescriptor::cascades",
                 sampling,
-                selection: Selection::Cascades,
                 views_per_light: descriptor.cascades,
+                selection: Selection::Cascades,
                 indexed: false,
             },
         )?;

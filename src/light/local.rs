@@ -5,12 +5,13 @@ use glam::DVec3;
 
 use crate::cast::ViewDraws;
 use crate::fit::{LightAxes, LocalFit, LocalInput, MAX_LOCAL_VIEWS, Reached};
-use crate::receive::{LayerState, MapsFrame, ShadowMaps};
+use crate::receive::{LayerState, MapsFrame, ShadowMaps, ShadowMapsDescriptor};
 use crate::{ShadowError, ShadowFrame, ShadowView, report::ShadowReport};
 
-/// State of the lights in the slots of one set of maps.
+/// Spot or point lights in the slots of one set of maps: a single light has the one slot, a pool has as many as its capacity.
 #[derive(Debug)]
 pub(crate) struct LocalLights {
+    maps: ShadowMaps,
     slots: Vec<SlotState>,
     /// Empty between frames; kept for their memory.
     candidates: Vec<Candidate>,
@@ -63,14 +64,28 @@ struct Candidate {
 const LEAST_SHARE_OF_IMPORTANCE: f64 = 1.0 / 4096.0;
 
 impl LocalLights {
-    /// For `capacity` lights.
-    pub fn new(capacity: u32) -> Self {
-        Self {
-            slots: vec![SlotState::default(); capacity as usize],
+    /// Makes the maps, and a slot for each of their lights.
+    pub fn new(
+        device: &wgpu::Device,
+        descriptor: &ShadowMapsDescriptor<'_>,
+    ) -> Result<Self, ShadowError> {
+        Ok(Self {
+            maps: ShadowMaps::new(device, descriptor)?,
+            slots: vec![SlotState::default(); descriptor.lights as usize],
             candidates: Vec::new(),
             layers: Vec::new(),
             reached: Reached::default(),
-        }
+        })
+    }
+
+    /// Returns the maps of all lights.
+    pub fn maps(&self) -> &ShadowMaps {
+        &self.maps
+    }
+
+    /// Marks the maps as not holding what was recorded.
+    pub fn invalidate(&mut self) {
+        self.maps.invalidate();
     }
 
     /// Forgets the light of a slot.
@@ -78,24 +93,24 @@ impl LocalLights {
         self.slots[slot as usize] = SlotState::default();
     }
 
-    /// Fits, culls, uploads and records into `maps`.
-    pub fn record<'m>(
+    /// Fits, culls, uploads and records.
+    pub fn record(
         &mut self,
-        maps: &'m mut ShadowMaps,
         encoder: &mut wgpu::CommandEncoder,
         frame: &ShadowFrame<'_>,
         lights: &[LocalPlacement],
         max_views: Option<u32>,
-    ) -> Result<&'m ShadowReport, ShadowError> {
+    ) -> Result<&ShadowReport, ShadowError> {
         let mut candidates = std::mem::take(&mut self.candidates);
         candidates.clear();
         for light in lights {
-            candidates.push(self.candidate(maps, frame, light)?);
+            candidates.push(self.candidate(frame, light)?);
         }
         if let Some(max_views) = max_views {
             self.choose(lights, max_views, &mut candidates);
         }
 
+        let maps = &mut self.maps;
         let mut layers = std::mem::take(&mut self.layers);
         layers.clear();
         let mut views = maps.spare_views();
@@ -159,10 +174,10 @@ impl LocalLights {
     /// Fits and culls one light.
     fn candidate(
         &mut self,
-        maps: &mut ShadowMaps,
         frame: &ShadowFrame<'_>,
         light: &LocalPlacement,
     ) -> Result<Candidate, ShadowError> {
+        let maps = &mut self.maps;
         let axes = &light.axes[..light.view_count as usize];
         let input = LocalInput {
             origin: frame.origin,

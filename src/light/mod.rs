@@ -7,11 +7,9 @@
 //! omni.rs         OmniShadow: a light that shines in every direction
 //! pool.rs         pools of spot and point lights
 //! local.rs        what spot and point lights share
-//! layer_limits.rs what the maps of a light need of a device's limits
 //! ```
 
 mod directional;
-mod layer_limits;
 mod local;
 mod omni;
 mod pool;

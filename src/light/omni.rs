@@ -4,7 +4,6 @@ use glam::DVec3;
 
 use crate::check;
 use crate::fit::LightAxes;
-use crate::light::layer_limits::check_layers;
 use crate::light::local::{LocalLights, LocalPlacement};
 use crate::receive::{
     Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, check_bias, check_filter,
@@ -67,7 +66,6 @@ pub struct OmniLight {
 /// pass into wrong faces, and always gets a pass for each. [`ShadowReport::passes`] tells which it was.
 #[derive(Debug)]
 pub struct OmniShadow {
-    maps: ShadowMaps,
     lights: LocalLights,
 }
 
@@ -82,24 +80,21 @@ impl OmniShadow {
     ) -> Result<Self, ShadowError> {
         check_filter("OmniShadowDescriptor::filter", descriptor.filter)?;
         check_bias("OmniShadowDescriptor::bias", descriptor.bias)?;
-        check_layers(device, "the six faces of an OmniShadow", 6)?;
-        let maps = ShadowMaps::new(
+        let lights = LocalLights::new(
             device,
             &ShadowMapsDescriptor {
                 label: descriptor.label.unwrap_or("omni shadow"),
-                size_field: "OmniShadowDescriptor::map_size",
                 map_size: descriptor.map_size,
-                layers: 6,
+                size_field: "OmniShadowDescriptor::map_size",
+                lights: 1,
+                layers_field: "the six faces of an OmniShadow",
                 sampling: Sampling::new(descriptor.filter, descriptor.bias),
-                selection: Selection::CubeFace,
                 views_per_light: 6,
+                selection: Selection::CubeFace,
                 indexed: false,
             },
         )?;
-        Ok(Self {
-            maps,
-            lights: LocalLights::new(1),
-        })
+        Ok(Self { lights })
     }
 
     /// Fits the faces to the frame, culls, writes the uniforms and records the depth passes that are needed: a face into which
@@ -118,18 +113,18 @@ impl OmniShadow {
         light: &OmniLight,
     ) -> Result<&ShadowReport, ShadowError> {
         let light = light.placement(0, 1.0)?;
-        self.lights
-            .record(&mut self.maps, encoder, frame, &[light], None)
+        self.lights.record(encoder, frame, &[light], None)
     }
+
     /// Returns the light's depth texture, uniforms and report.
     pub fn maps(&self) -> &ShadowMaps {
-        &self.maps
+        self.lights.maps()
     }
 
     /// Says that the maps no longer hold what was recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)): the
     /// next frame draws every view.
     pub fn invalidate(&mut self) {
-        self.maps.invalidate();
+        self.lights.invalidate();
     }
 }
 

@@ -3,7 +3,6 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::check;
-use crate::light::layer_limits::check_layers;
 use crate::light::local::{LocalLights, LocalPlacement};
 use crate::receive::{
     Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, check_bias, check_filter,
@@ -126,22 +125,6 @@ impl Slots {
     }
 }
 
-fn check_descriptor(
-    device: &wgpu::Device,
-    descriptor: &PoolDescriptor<'_>,
-    views_per_light: u32,
-) -> Result<(), ShadowError> {
-    let field = "PoolDescriptor::capacity";
-    check::in_range(
-        field,
-        "at least 1",
-        descriptor.capacity > 0,
-        descriptor.capacity,
-    )?;
-    let layers = u64::from(descriptor.capacity) * u64::from(views_per_light);
-    check_layers(device, field, layers)
-}
-
 /// The two pools differ in their lights alone.
 macro_rules! pool {
     (
@@ -150,7 +133,6 @@ macro_rules! pool {
         $(#[$doc])*
         #[derive(Debug)]
         pub struct $pool {
-            maps: ShadowMaps,
             lights: LocalLights,
             slots: Slots,
             /// Empty between frames; kept for its memory.
@@ -168,23 +150,28 @@ macro_rules! pool {
             ) -> Result<Self, ShadowError> {
                 $filter_check("PoolDescriptor::filter", descriptor.filter)?;
                 check_bias("PoolDescriptor::bias", descriptor.bias)?;
-                check_descriptor(device, descriptor, $views)?;
-                let maps = ShadowMaps::new(
+                check::in_range(
+                    "PoolDescriptor::capacity",
+                    "at least 1",
+                    descriptor.capacity > 0,
+                    descriptor.capacity,
+                )?;
+                let lights = LocalLights::new(
                     device,
                     &ShadowMapsDescriptor {
                         label: descriptor.label.unwrap_or("shadow pool"),
-                        size_field: "PoolDescriptor::map_size",
                         map_size: descriptor.map_size,
-                        layers: descriptor.capacity * $views,
+                        size_field: "PoolDescriptor::map_size",
+                        lights: descriptor.capacity,
+                        layers_field: "PoolDescriptor::capacity",
                         sampling: Sampling::new(descriptor.filter, descriptor.bias),
-                        selection: $selection,
                         views_per_light: $views,
+                        selection: $selection,
                         indexed: true,
                     },
                 )?;
                 Ok(Self {
-                    maps,
-                    lights: LocalLights::new(descriptor.capacity),
+                    lights,
                     slots: Slots {
                         tickets: vec![None; descriptor.capacity as usize],
                         seen: Vec::new(),
@@ -242,23 +229,21 @@ macro_rules! pool {
                     let placement = entry.light.placement(entry.slot.index, entry.importance)?;
                     placements.push(placement);
                 }
-                let report =
-                    self.lights
-                        .record(&mut self.maps, encoder, frame, &placements, max_views);
+                let report = self.lights.record(encoder, frame, &placements, max_views);
                 self.placements = placements;
                 report
             }
 
             /// Returns the light's depth texture, uniforms and report.
             pub fn maps(&self) -> &ShadowMaps {
-                &self.maps
+                self.lights.maps()
             }
 
             /// Says that the maps no longer hold what was recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)): the
             /// next frame draws every view, or under a budget as many as it allows, and the rest is lit
             /// until its turn.
             pub fn invalidate(&mut self) {
-                self.maps.invalidate();
+                self.lights.invalidate();
             }
         }
     };

@@ -4,7 +4,6 @@ use glam::{DVec3, Vec3};
 
 use crate::check;
 use crate::fit::{LightAxes, MAX_LOCAL_VIEWS};
-use crate::light::layer_limits::check_layers;
 use crate::light::local::{LocalLights, LocalPlacement};
 use crate::receive::{
     Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, check_bias, check_planar_filter,
@@ -59,7 +58,6 @@ impl SpotLight {
 /// Shadows of a spot light: one perspective view in a depth texture of one layer.
 #[derive(Debug)]
 pub struct SpotShadow {
-    maps: ShadowMaps,
     lights: LocalLights,
 }
 
@@ -74,24 +72,21 @@ impl SpotShadow {
     ) -> Result<Self, ShadowError> {
         check_planar_filter("SpotShadowDescriptor::filter", descriptor.filter)?;
         check_bias("SpotShadowDescriptor::bias", descriptor.bias)?;
-        check_layers(device, "the map of a SpotShadow", 1)?;
-        let maps = ShadowMaps::new(
+        let lights = LocalLights::new(
             device,
             &ShadowMapsDescriptor {
                 label: descriptor.label.unwrap_or("spot shadow"),
-                size_field: "SpotShadowDescriptor::map_size",
                 map_size: descriptor.map_size,
-                layers: 1,
+                size_field: "SpotShadowDescriptor::map_size",
+                lights: 1,
+                layers_field: "the map of a SpotShadow",
                 sampling: Sampling::new(descriptor.filter, descriptor.bias),
-                selection: Selection::OneView,
                 views_per_light: 1,
+                selection: Selection::OneView,
                 indexed: false,
             },
         )?;
-        Ok(Self {
-            maps,
-            lights: LocalLights::new(1),
-        })
+        Ok(Self { lights })
     }
 
     /// Fits the view to the frame, culls, writes the uniforms and records the depth pass if it is needed.
@@ -109,18 +104,18 @@ impl SpotShadow {
         light: &SpotLight,
     ) -> Result<&ShadowReport, ShadowError> {
         let light = light.placement(0, 1.0)?;
-        self.lights
-            .record(&mut self.maps, encoder, frame, &[light], None)
+        self.lights.record(encoder, frame, &[light], None)
     }
+
     /// Returns the light's depth texture, uniforms and report.
     pub fn maps(&self) -> &ShadowMaps {
-        &self.maps
+        self.lights.maps()
     }
 
     /// Says that the maps no longer hold what was recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)): the
     /// next frame draws every view.
     pub fn invalidate(&mut self) {
-        self.maps.invalidate();
+        self.lights.invalidate();
     }
 }
 

@@ -49,7 +49,7 @@ pub(crate) enum BiasScheme {
 }
 
 impl BiasScheme {
-    /// Name of the WGSL module; its function is `shadow_receiver_` and what follows `bias_`.
+    /// Returns the name of the WGSL module.
     pub const fn module(self) -> &'static str {
         match self {
             Self::Plane => "bias_plane",
@@ -58,12 +58,12 @@ impl BiasScheme {
         }
     }
 
-    /// Name of the WGSL function that makes a receiver.
-    pub const fn function(self) -> &'static str {
+    /// Returns what follows `shadow_receiver_` in the name of the WGSL function that makes a receiver.
+    pub const fn name(self) -> &'static str {
         match self {
-            Self::Plane => "shadow_receiver_plane",
-            Self::NormalOffset => "shadow_receiver_normal_offset",
-            Self::Manual => "shadow_receiver_manual",
+            Self::Plane => "plane",
+            Self::NormalOffset => "normal_offset",
+            Self::Manual => "manual",
         }
     }
 }

@@ -51,7 +51,7 @@ impl Default for ShadowBindingsDescriptor<'_> {
 /// `shadow_view_NAME(position)` (for pools with the index in front) tells which view serves a place, for a tint of cascades or
 /// faces: the number of the layer, or the number of layers where none does.
 /// The variables `shadow_map_NAME` and `shadow_views_NAME` are the light's own texture (`texture_depth_2d_array`, but see
-/// [`ShadowBindings::new`]) and `array<ShadowView, N>`, for engines that want a lookup of their own beside it.
+/// [`ShadowBindings::new`]) and `array<ShadowViewUniform, N>`, for engines that want a lookup of their own beside it.
 #[derive(Debug)]
 pub struct ShadowBindings {
     layout: wgpu::BindGroupLayout,

@@ -1,32 +1,64 @@
-//! The WGSL of a set of lights: the modules in use, the group's number, the bindings, and one function per light.
-
-use std::fmt::Write;
+//! The WGSL of a set of lights: the modules that they use, the bindings, and the functions of each light.
 
 use crate::error::BindingsError;
 use crate::receive::Bias;
 use crate::receive::filter::FilterSampler;
 use crate::receive::layout::{NamedMaps, map_access, views_binding};
 use crate::receive::sampled_maps::{SampledMaps, Selection};
+use crate::receive::template;
 use crate::receive::texel_access::TexelAccess;
 use crate::shader;
 
-/// Returns the text for `lights` in bind group `group`, whose filters take `samplers`, on a device with `access` to texels.
+/// Returns the WGSL for `lights` in bind group `group`. `samplers` are the samplers that their filters use, in the order of their
+/// bindings, and `access` is how shaders of the device read single texels.
 pub(crate) fn wgsl(
     group: u32,
     lights: &NamedMaps<'_>,
     samplers: &[FilterSampler],
     access: TexelAccess,
 ) -> Result<String, BindingsError> {
+    let mut text = shader::compose(&modules(lights, samplers, access))?;
+    text += &template::Group {
+        group: &format!("{group}u"),
+    }
+    .fill();
+    for (binding, sampler) in samplers.iter().enumerate() {
+        let (sampler, sampler_type) = sampler_names(*sampler);
+        text += &template::Sampler {
+            sampler_binding: &binding.to_string(),
+            sampler,
+            sampler_type,
+        }
+        .fill();
+    }
+    for (light, (name, maps)) in lights.iter().enumerate() {
+        let views_binding = views_binding(samplers, light);
+        text += &template::Bindings {
+            views_binding: &views_binding.to_string(),
+            map_binding: &(views_binding + 1).to_string(),
+            name,
+            array_length: &maps.view_count.to_string(),
+            map_type: map_access(maps, access).map_wgsl(),
+        }
+        .fill();
+        text += &view_function(name, maps);
+        text += &visibility_function(name, maps);
+    }
+    Ok(text)
+}
+
+/// Returns the names of the modules that the lights' functions call.
+fn modules(
+    lights: &NamedMaps<'_>,
+    samplers: &[FilterSampler],
+    access: TexelAccess,
+) -> Vec<&'static str> {
     let mut modules = vec!["normal"];
     if samplers.contains(&FilterSampler::Point) {
         modules.extend(access.module());
     }
     for (_, maps) in lights {
-        let SampledMaps {
-            sampling,
-            selection,
-            ..
-        } = *maps;
+        let (sampling, selection) = (maps.sampling, maps.selection);
         modules.push(sampling.filter.wgsl().0);
         modules.push(sampling.bias.scheme(sampling.filter).module());
         if selection == Selection::CubeFace {
@@ -34,204 +66,121 @@ pub(crate) fn wgsl(
             modules.extend(sampling.filter.directions().map(|_| "filter_direction"));
         }
     }
-    let mut text = shader::compose(&modules)?;
-    // Writing to a String does not fail.
-    let _ = writeln!(text, "\nconst SHADOW_GROUP: u32 = {}u;", group);
-    for (binding, sampler) in samplers.iter().enumerate() {
-        let (name, ty) = sampler_names(*sampler);
-        let _ = writeln!(
-            text,
-            "@group(SHADOW_GROUP) @binding({binding}) var {name}: {ty};"
-        );
+    modules
+}
+
+/// Returns the function `shadow_view_NAME`, which selects the view that serves a position.
+fn view_function(name: &str, maps: &SampledMaps<'_>) -> String {
+    let index = index(maps);
+    let view_count = &view_count(maps);
+    match maps.selection {
+        Selection::Cascades => template::Cascades {
+            name,
+            index,
+            view_count,
+        }
+        .fill(),
+        Selection::OneView => template::OneView {
+            name,
+            index,
+            first_view: &first_view(maps),
+            view_count,
+        }
+        .fill(),
+        Selection::CubeFace => template::CubeFace {
+            name,
+            index,
+            first_view: &first_view(maps),
+            any_view: &any_view(maps),
+            view_count,
+        }
+        .fill(),
     }
-    for (light, (name, maps)) in lights.iter().enumerate() {
-        let binding = views_binding(samplers, light);
-        text += &light_wgsl(name, maps, binding, access);
+}
+
+/// Returns the function `shadow_NAME`, which looks the light's visibility up.
+fn visibility_function(name: &str, maps: &SampledMaps<'_>) -> String {
+    let sampling = maps.sampling;
+    let index = index(maps);
+    let view_count = &view_count(maps);
+    let bias = sampling.bias.scheme(sampling.filter).name();
+    let (filter, sampler) = sampling.filter.wgsl();
+    let (sampler, _) = sampler_names(sampler);
+    if let Some((pattern, sample_count)) = sampling.filter.directions() {
+        let (surface, normal) = match sampling.bias {
+            Bias::Manual { .. } => ("sphere", ""),
+            Bias::Auto | Bias::NormalOffset => ("plane", "normal"),
+        };
+        return template::MeanLookup {
+            name,
+            index,
+            any_view: &any_view(maps),
+            view_count,
+            pattern,
+            sample_count: &format!("{sample_count}u"),
+            sample_count_f32: &format!("{sample_count}.0"),
+            surface,
+            normal,
+            bias,
+            filter,
+            sampler,
+        }
+        .fill();
     }
-    Ok(text)
+    if sampling.blend > 0.0 && maps.view_count > 1 {
+        return template::BlendedLookup {
+            name,
+            index,
+            view_count,
+            bias,
+            filter,
+            sampler,
+        }
+        .fill();
+    }
+    template::SingleLookup {
+        name,
+        index,
+        view_count,
+        bias,
+        filter,
+        sampler,
+    }
+    .fill()
 }
 
-/// Bindings and functions of one light.
-fn light_wgsl(name: &str, maps: &SampledMaps<'_>, binding: u32, access: TexelAccess) -> String {
-    let count = maps.view_count;
-    let (parameter, argument) = if maps.indexed {
-        ("index: u32, ", "index, ")
-    } else {
-        ("", "")
-    };
-    let choice = match maps.selection {
-        Selection::Cascades => first_that_covers(name, maps),
-        Selection::OneView => view_that_holds(name, maps, String::new()),
-        Selection::CubeFace => face_that_holds(name, maps),
-    };
-    let blends = maps.sampling.blend > 0.0 && count > 1;
-    let lookup = match maps.sampling.filter.directions() {
-        None if blends => blended_lookup(name, maps),
-        None => single_lookup(name, maps, argument),
-        Some((offsets, samples)) => mean_lookup(name, maps, argument, offsets, samples),
-    };
-    format!(
-        "
-@group(SHADOW_GROUP) @binding({binding}) var<uniform> shadow_views_{name}: array<ShadowView, {count}>;
-@group(SHADOW_GROUP) @binding({map}) var shadow_map_{name}: {map_type};
-
-// The view, and so the layer, that serves a place; {count} where none does.
-fn shadow_view_{name}({parameter}position: vec3<f32>) -> u32 {{
-{choice}    return {count}u;
-}}
-
-// Visibility in [0, 1]; 1 where no view serves the place.
-fn shadow_{name}({parameter}position: vec3<f32>, normal: vec3<f32>) -> f32 {{
-{lookup}}}
-",
-        map = binding + 1,
-        map_type = map_access(maps, access).map_wgsl(),
-    )
+/// Returns the parameter by which a pool's functions select a light; empty for a light that is alone.
+fn index(maps: &SampledMaps<'_>) -> &'static str {
+    if maps.indexed { "index" } else { "" }
 }
 
-/// The first of a light's cascades that covers the place. A directional light has neither range nor cone to ask for.
-fn first_that_covers(name: &str, maps: &SampledMaps<'_>) -> String {
-    let count = maps.view_count;
-    format!(
-        "    for (var view = 0u; view < {count}u; view++) {{
-        if shadow_view_covers(shadow_views_{name}[view], position) {{
-            return view;
-        }}
-    }}
-"
-    )
+/// Returns the number of all views as a WGSL expression.
+fn view_count(maps: &SampledMaps<'_>) -> String {
+    format!("{}u", maps.view_count)
 }
 
-/// The face on which the place lies as seen from the light, if it holds it.
-fn face_that_holds(name: &str, maps: &SampledMaps<'_>) -> String {
-    let any = any_view(maps);
-    let face = format!(" + shadow_cube_face(position - shadow_views_{name}[{any}].anchor)");
-    view_that_holds(name, maps, face)
-}
-
-/// The light's first view, or so many after it, if it holds the place.
-fn view_that_holds(name: &str, maps: &SampledMaps<'_>, after_first: String) -> String {
-    let count = maps.view_count;
-    let first = first_view(maps);
-    format!(
-        "    let view = {first}{after_first};
-    if view < {count}u && shadow_view_holds(shadow_views_{name}[view], position) {{
-        return view;
-    }}
-"
-    )
-}
-
-/// First view of a light; for an index that no slot of the pool has, the end of all views. The index is limited before it is
-/// multiplied: 32 bits do not hold every product.
+/// Returns the first view of the light as a WGSL expression. For an index that no slot of the pool has, it is the number of all
+/// views. The index is limited before it is multiplied, because not every product fits 32 bits.
 fn first_view(maps: &SampledMaps<'_>) -> String {
-    let (count, per_light) = (maps.view_count, maps.views_per_light);
-    if maps.indexed {
-        format!("min(index, {}u) * {per_light}u", count / per_light)
-    } else {
-        "0u".to_owned()
-    }
+    limited_view(maps, maps.view_count / maps.views_per_light)
 }
 
-/// A view of the light, for what all its views have in common; for an index that no slot has, one of another light.
+/// Returns some view of the light as a WGSL expression, for what all its views have in common. For an index that no slot of the
+/// pool has, it is a view of another light.
 fn any_view(maps: &SampledMaps<'_>) -> String {
-    let (count, per_light) = (maps.view_count, maps.views_per_light);
+    limited_view(maps, maps.view_count / maps.views_per_light - 1)
+}
+
+/// Returns the first view of the light with the pool's index, but of no light after `last_index`.
+fn limited_view(maps: &SampledMaps<'_>, last_index: u32) -> String {
     if maps.indexed {
-        format!("min(index, {}u) * {per_light}u", count / per_light - 1)
+        format!("min(index, {last_index}u) * {}u", maps.views_per_light)
     } else {
         "0u".to_owned()
     }
 }
 
-fn single_lookup(name: &str, maps: &SampledMaps<'_>, argument: &str) -> String {
-    let count = maps.view_count;
-    let make_receiver = make_receiver(maps);
-    let lookup = lookup(name, maps);
-    format!(
-        "    let view = shadow_view_{name}({argument}position);
-    if view == {count}u {{
-        return 1.0;
-    }}
-    let receiver = {make_receiver}(shadow_views_{name}[view], position, normal);
-    return {lookup};
-"
-    )
-}
-
-/// The mean of all cascades that hold the place, weighted from near to far: a cascade takes what the ones before it leave, and
-/// less toward its border. Continuous wherever a border lies.
-fn blended_lookup(name: &str, maps: &SampledMaps<'_>) -> String {
-    let count = maps.view_count;
-    let make_receiver = make_receiver(maps);
-    let lookup = lookup(name, maps);
-    format!(
-        "    var lit = 0.0;
-    var share = 0.0;
-    for (var view = shadow_view_{name}(position); view < {count}u && share < 1.0; view++) {{
-        if shadow_view_covers(shadow_views_{name}[view], position) {{
-            let weight = (1.0 - share) * shadow_view_weight(shadow_views_{name}[view], position);
-            let receiver = {make_receiver}(shadow_views_{name}[view], position, normal);
-            lit += weight * {lookup};
-            share += weight;
-        }}
-    }}
-    return select(1.0, lit / share, share > 0.0);
-"
-    )
-}
-
-/// The mean over directions around the place's own, each on its own face. What varies is the comparison's left side, by `>=`, for
-/// the sake of the driver that `shadow_view_holds` tells of.
-fn mean_lookup(
-    name: &str,
-    maps: &SampledMaps<'_>,
-    argument: &str,
-    offsets: &str,
-    samples: u32,
-) -> String {
-    let count = maps.view_count;
-    let any = any_view(maps);
-    let make_receiver = make_receiver(maps);
-    let lookup = lookup(name, maps);
-    let meets = match maps.sampling.bias {
-        Bias::Manual { .. } => "shadow_direction_on_sphere(from_light, offset)",
-        Bias::Auto | Bias::NormalOffset => "shadow_direction_on_plane(from_light, normal, offset)",
-    };
-    format!(
-        "    let light = shadow_views_{name}[{any}];
-    let from_light = position - light.anchor;
-    if length(from_light) >= light.range {{
-        return 1.0;
-    }}
-    let radius = {offsets}_radius(light, position);
-    var lit = 0.0;
-    for (var i = 0u; i < {samples}u; i++) {{
-        let offset = {offsets}(i) * radius;
-        let place = {meets} + light.anchor;
-        let view = shadow_view_{name}({argument}place);
-        if view == {count}u {{
-            lit += 1.0;
-        }} else {{
-            let receiver = {make_receiver}(shadow_views_{name}[view], place, normal);
-            lit += {lookup};
-        }}
-    }}
-    return lit / {samples}.0;
-"
-    )
-}
-
-fn make_receiver(maps: &SampledMaps<'_>) -> &'static str {
-    let sampling = &maps.sampling;
-    sampling.bias.scheme(sampling.filter).function()
-}
-
-fn lookup(name: &str, maps: &SampledMaps<'_>) -> String {
-    let (filter, sampler) = maps.sampling.filter.wgsl();
-    let sampler = sampler_names(sampler).0;
-    format!("shadow_{filter}(shadow_map_{name}, {sampler}, receiver)")
-}
-
+/// Returns name and type of a sampler's variable.
 fn sampler_names(sampler: FilterSampler) -> (&'static str, &'static str) {
     match sampler {
         FilterSampler::Comparison => ("shadow_comparison_sampler", "sampler_comparison"),

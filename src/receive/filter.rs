@@ -153,11 +153,12 @@ impl Filter {
         }
     }
 
-    /// The offsets of a direction-space filter: name of the WGSL function and their number.
+    /// Returns the pattern of a direction-space filter: what follows `shadow_direction_` in the name of the WGSL function that
+    /// returns its offsets, and their number.
     pub(crate) const fn directions(self) -> Option<(&'static str, u32)> {
         match self {
-            Self::DirectionGrid { .. } => Some(("shadow_direction_grid", 64)),
-            Self::DirectionStar { .. } => Some(("shadow_direction_star", 20)),
+            Self::DirectionGrid { .. } => Some(("grid", 64)),
+            Self::DirectionStar { .. } => Some(("star", 20)),
             _ => None,
         }
     }

@@ -1,14 +1,14 @@
-//! The bind group of a set of lights: samplers first, then uniforms and map of each light.
+//! The bind group of a set of lights: first the samplers that their filters use, then the uniforms and the map of each light.
 
 use crate::receive::filter::FilterSampler;
 use crate::receive::sampled_maps::SampledMaps;
 use crate::receive::texel_access::TexelAccess;
 use crate::receive::view_uniform_bytes;
 
-/// Lights by name.
+/// The lights of a set, each with the name that its WGSL functions end in.
 pub(crate) type NamedMaps<'a> = [(&'a str, SampledMaps<'a>)];
 
-/// Samplers that the set's filters take, in binding order.
+/// Returns the samplers that the filters of `lights` use. A sampler's place in the list is the number of its binding.
 pub(crate) fn used_samplers(lights: &NamedMaps<'_>) -> Vec<FilterSampler> {
     [FilterSampler::Comparison, FilterSampler::Point]
         .into_iter()
@@ -20,12 +20,13 @@ pub(crate) fn used_samplers(lights: &NamedMaps<'_>) -> Vec<FilterSampler> {
         .collect()
 }
 
-/// Returns the number of the binding with the uniforms of a light; its map follows.
+/// Returns the number of the binding with the uniforms of the light at index `light`; the next binding is its map.
 pub(crate) fn views_binding(samplers: &[FilterSampler], light: usize) -> u32 {
     (samplers.len() + 2 * light) as u32
 }
 
-/// How a light's map is bound on a device with `access` to texels: for the comparing sampler always as a depth texture.
+/// Returns how a light's map is bound where shaders of the device read single texels by `access`. A filter that uses the
+/// comparison sampler needs a depth texture on every device.
 pub(crate) fn map_access(maps: &SampledMaps<'_>, access: TexelAccess) -> TexelAccess {
     match maps.sampling.filter.wgsl().1 {
         FilterSampler::Comparison => TexelAccess::Gathers,
@@ -33,6 +34,7 @@ pub(crate) fn map_access(maps: &SampledMaps<'_>, access: TexelAccess) -> TexelAc
     }
 }
 
+/// Creates the layout of the bind group. The caller's error scope captures device errors.
 pub(crate) fn create_layout(
     device: &wgpu::Device,
     visibility: wgpu::ShaderStages,
@@ -78,6 +80,7 @@ pub(crate) fn create_layout(
     })
 }
 
+/// Creates the samplers and the bind group for `layout`. The caller's error scope captures device errors.
 pub(crate) fn create_bind_group(
     device: &wgpu::Device,
     label: Option<&str>,
@@ -115,6 +118,7 @@ pub(crate) fn create_bind_group(
     })
 }
 
+/// Creates a sampler that clamps to the edge: linear for comparisons, nearest for gathers and single samples.
 fn create_sampler(device: &wgpu::Device, sampler: FilterSampler) -> wgpu::Sampler {
     let comparison = sampler == FilterSampler::Comparison;
     let filter = if comparison {
@@ -126,7 +130,7 @@ fn create_sampler(device: &wgpu::Device, sampler: FilterSampler) -> wgpu::Sample
         label: Some("shadow sampler"),
         mag_filter: filter,
         min_filter: filter,
-        // Reversed depth: lit where the receiver is at least as near as what the map holds.
+        // Depth is reversed, so a receiver is lit where its depth is at least the one in the map.
         compare: comparison.then_some(wgpu::CompareFunction::GreaterEqual),
         ..Default::default()
     })

@@ -5,10 +5,12 @@ use glam::Vec3;
 use crate::cast::{FrameCasters, Plan, Recorder, ViewDraws};
 use crate::error::DeviceError;
 use crate::gpu::{DepthMap, UploadBuffer, capture_device_errors};
+use crate::receive::layer_limits::check_layers;
 use crate::receive::report::{ShadowReport, ViewReport, ViewStatus};
 use crate::receive::sampled_maps::{SampledMaps, Selection};
 use crate::receive::{
     Sampling, ShadowViewUniform, empty_view_uniform, endless_range, view_uniform,
+    view_uniform_bytes,
 };
 use crate::{ShadowError, ShadowView, report::SliceReport};
 
@@ -47,10 +49,13 @@ pub(crate) struct ShadowMapsDescriptor<'a> {
     /// Path of the size in the caller's descriptor.
     pub size_field: &'static str,
     pub map_size: u32,
-    pub layers: u32,
+    /// The number of lights: one, or the capacity of a pool.
+    pub lights: u32,
+    pub views_per_light: u32,
+    /// What decides how many layers the maps have, for the error of a device that cannot hold them.
+    pub layers_field: &'static str,
     pub sampling: Sampling,
     pub selection: Selection,
-    pub views_per_light: u32,
     /// Lights are asked by index.
     pub indexed: bool,
 }
@@ -97,7 +102,10 @@ impl ShadowMaps {
         device: &wgpu::Device,
         descriptor: &ShadowMapsDescriptor<'_>,
     ) -> Result<Self, ShadowError> {
-        let (label, layers) = (descriptor.label, descriptor.layers);
+        // Any product fits 64 bits; one that a device can hold fits 32 bits as well.
+        let layers = u64::from(descriptor.lights) * u64::from(descriptor.views_per_light);
+        check_layers(device, descriptor.layers_field, layers)?;
+        let (label, layers) = (descriptor.label, layers as u32);
         let map = DepthMap::new(
             device,
             label,
@@ -122,7 +130,7 @@ impl ShadowMaps {
             uniforms: UploadBuffer::new(
                 device,
                 &format!("{label} views"),
-                u64::from(layers) * size_of::<ShadowViewUniform>() as u64,
+                view_uniform_bytes(layers.into()),
             )?,
             sampling: descriptor.sampling,
             selection: descriptor.selection,

@@ -8,9 +8,10 @@
 //! reference.rs     the WGSL's arithmetic once more in f64
 //! texel_access.rs  gathers, or samples where a device has none
 //! maps.rs          ShadowMaps: what every light owns; sampled_maps.rs: what a lookup needs of it
+//! layer_limits.rs  what the maps of a light need of a device's limits
 //! report.rs        ShadowReport: what a light did in a frame
 //! bindings.rs      one bind group for a set of lights; layout.rs: the entries of it
-//! emit.rs          the WGSL for exactly that set
+//! emit.rs          the WGSL for exactly that set, from the templates that template.rs fills
 //! ```
 
 mod bias;
@@ -18,11 +19,13 @@ mod bindings;
 mod check_sampling;
 mod emit;
 mod filter;
+mod layer_limits;
 mod layout;
 mod maps;
 pub mod reference;
 mod report;
 mod sampled_maps;
+mod template;
 mod texel_access;
 mod uniforms;
 

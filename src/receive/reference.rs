@@ -40,7 +40,7 @@ pub struct Receiver {
     pub gradient: DVec2,
     /// Radius of a penumbra in texels per difference of depth.
     pub penumbra: DVec2,
-    /// Where the map's first texel lies in a grid that is fixed in the world, as `ShadowViewUniform::grid`.
+    /// Where the map's first texel lies in a grid that is fixed in the world, as `grid` of the WGSL struct `ShadowViewUniform`.
     pub grid: u32,
     /// [`holds`] of the place; where it is false, visibility is 1.
     pub inside: bool,

@@ -8,63 +8,77 @@ use crate::gpu::DepthFormat;
 use crate::receive::bias::lateral_error_texels;
 use crate::receive::{Bias, Filter};
 
-/// Mirror of `ShadowView` in `wgsl/view.wgsl`: what an engine with its own bind groups puts into a uniform buffer.
+/// What the WGSL functions read of one view of a light: the bytes of the WGSL struct `ShadowViewUniform`.
+///
+/// [`ShadowMaps::uniform_buffer`](crate::ShadowMaps::uniform_buffer) already holds these for every layer of a light. An engine
+/// that keeps them in a buffer of its own copies the bytes of
+/// [`ShadowMaps::view_uniforms`](crate::ShadowMaps::view_uniforms) after each frame, for instance with
+/// `bytemuck::cast_slice`. Their layout is that of a uniform buffer: an `array<ShadowViewUniform, N>` in WGSL has a stride of
+/// [`SIZE_BYTES`](Self::SIZE_BYTES) and no padding.
+///
+/// The members are read by the library's own WGSL alone and may change with every version, so the bytes belong to the WGSL of
+/// the same version. [`ShadowMaps::views`](crate::ShadowMaps::views) tells what each view covers.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct ShadowViewUniform {
     /// Homogeneous texel x, texel y, depth and w from coordinates relative to the anchor; columns.
-    pub texel_from_anchor: [[f32; 4]; 4],
+    pub(crate) texel_from_anchor: [[f32; 4]; 4],
     /// Row of the inverse transpose that gives a plane's component along texel x.
-    pub plane_across: [f32; 4],
+    pub(crate) plane_across: [f32; 4],
     /// The same along texel y.
-    pub plane_down: [f32; 4],
+    pub(crate) plane_down: [f32; 4],
     /// The same along depth.
-    pub plane_depth: [f32; 4],
+    pub(crate) plane_depth: [f32; 4],
     /// Toward the light along the view's axis; w is 1 for a local light, whose place is the anchor, and 0 for a directional one.
-    pub light: [f32; 4],
+    pub(crate) light: [f32; 4],
     /// A point of render space inside the view.
-    pub anchor: [f32; 3],
+    pub(crate) anchor: [f32; 3],
     /// Layer of the map.
-    pub layer: u32,
+    pub(crate) layer: u32,
     /// Texels between which a lookup stays inside the map, kernel and bias included: x and y from, x and y to.
-    pub inner: [f32; 4],
+    pub(crate) inner: [f32; 4],
     /// Texels per side.
-    pub map_size: f32,
+    pub(crate) map_size: f32,
     /// Absolute rounding error of a comparison in ndc depth.
-    pub depth_error: f32,
+    pub(crate) depth_error: f32,
     /// Rounding error of a comparison relative to the depth.
-    pub depth_error_relative: f32,
+    pub(crate) depth_error_relative: f32,
     /// Error across the map in texels.
-    pub lateral_error: f32,
+    pub(crate) lateral_error: f32,
     /// Offset along the normal in texels times |nx| + |ny|.
-    pub offset_texels: f32,
+    pub(crate) offset_texels: f32,
     /// Offset along the normal in world units.
-    pub offset_world: f32,
+    pub(crate) offset_world: f32,
     /// Manual bias: constant, world units.
-    pub manual_constant: f32,
+    pub(crate) manual_constant: f32,
     /// Manual bias: slope, world units.
-    pub manual_slope: f32,
+    pub(crate) manual_slope: f32,
     /// Edge sharpness.
-    pub sharpness: f32,
+    pub(crate) sharpness: f32,
     /// World distance from the anchor beyond which a local light does not reach; huge for a directional one.
-    pub range: f32,
+    pub(crate) range: f32,
     /// Cosine of the half-angle of a cone around the view's axis; -2 for none.
-    pub cone_cosine: f32,
+    pub(crate) cone_cosine: f32,
     /// Radius in world units of the direction-space filters.
-    pub sample_radius: f32,
+    pub(crate) sample_radius: f32,
     /// The viewer in render space; w is 1, or 0 where no viewer is known.
-    pub viewer: [f32; 4],
+    pub(crate) viewer: [f32; 4],
     /// Texels along x and y over which a light with size spreads a penumbra, per difference of ndc depth.
-    pub penumbra: [f32; 2],
+    pub(crate) penumbra: [f32; 2],
     /// Texels from the border within which a cascade gives way to the next; 0 for an end without one.
-    pub fade_texels: f32,
+    pub(crate) fade_texels: f32,
     /// Where the first texel lies in a grid that is fixed in the world, modulo 65536: x in the low half, y in the high.
-    pub grid: u32,
+    pub(crate) grid: u32,
+}
+
+impl ShadowViewUniform {
+    /// Size in bytes, and stride in an array: a multiple of 16, as uniform buffers require.
+    pub const SIZE_BYTES: u64 = size_of::<Self>() as u64;
 }
 
 /// Bytes of the uniforms of `views` views.
 pub(crate) fn view_uniform_bytes(views: u64) -> u64 {
-    views * size_of::<ShadowViewUniform>() as u64
+    views * ShadowViewUniform::SIZE_BYTES
 }
 
 /// A range for the uniforms: an endless one becomes a distance that none exceeds and whose square is finite.
@@ -79,7 +93,7 @@ pub(crate) struct Sampling {
     pub bias: Bias,
     pub depth_format: DepthFormat,
     /// Share of a cascade's width in which it gives way to the next.
-    pub blend: f32,
+    pub(crate) blend: f32,
 }
 
 /// What rounding may move a lookup by: 6uN is 1/350 of a texel at N = 8192.
@@ -174,5 +188,57 @@ pub(crate) fn view_uniform(view: &ShadowView, sampling: &Sampling) -> ShadowView
             .to_array(),
         fade_texels: sampling.blend * view.map_size() as f32,
         grid: view.world_grid(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+    use std::mem::offset_of;
+
+    use super::{ShadowViewUniform, Zeroable};
+    use crate::shader;
+
+    /// Every member has the offset, the size and the name in Rust that it has in WGSL, and the whole has one size, so that arrays
+    /// of it have one stride.
+    #[test]
+    fn rust_and_wgsl_have_one_layout() {
+        macro_rules! members {
+            ($($member:ident)*) => {{
+                let value = ShadowViewUniform::zeroed();
+                BTreeMap::from([$((
+                    stringify!($member),
+                    (offset_of!(ShadowViewUniform, $member), size_of_val(&value.$member)),
+                )),*])
+            }};
+        }
+        let in_rust = members!(
+            texel_from_anchor plane_across plane_down plane_depth light anchor layer inner map_size depth_error
+            depth_error_relative lateral_error offset_texels offset_world manual_constant manual_slope sharpness range
+            cone_cosine sample_radius viewer penumbra fade_texels grid
+        );
+        let source = shader::compose(&["view"]).expect("a module of the table");
+        let module = naga::front::wgsl::parse_str(&source).expect("valid WGSL");
+        let mut types = module.types.iter().map(|(_, ty)| ty);
+        let uniform = types.find(|ty| ty.name.as_deref() == Some("ShadowViewUniform"));
+        let Some(naga::TypeInner::Struct { members, span }) = uniform.map(|ty| &ty.inner) else {
+            panic!("no struct ShadowViewUniform");
+        };
+        let in_wgsl: BTreeMap<_, _> = members
+            .iter()
+            .map(|member| {
+                let size = module.types[member.ty].inner.size(module.to_ctx());
+                let name = member.name.as_deref().expect("a named member");
+                (name, (member.offset as usize, size as usize))
+            })
+            .collect();
+        assert_eq!(in_rust, in_wgsl);
+        assert_eq!(u64::from(*span), ShadowViewUniform::SIZE_BYTES);
+        let bytes: usize = in_rust.values().map(|(_, size)| size).sum();
+        assert_eq!(
+            bytes, *span as usize,
+            "padding would be uploaded uninitialised"
+        );
+        assert_eq!(span % 16, 0, "the stride of an array in a uniform buffer");
     }
 }

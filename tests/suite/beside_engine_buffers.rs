@@ -150,7 +150,7 @@ fn own_picture(gpu: &Gpu, light: &dyn Light, scheme: &str, before: u32) -> RgbaI
         .collect();
     let source = format!(
         "{modules}{own}
-@group(0) @binding({before}) var<uniform> own_view: ShadowView;
+@group(0) @binding({before}) var<uniform> own_view: ShadowViewUniform;
 @group(1) @binding(0) var own_map: texture_depth_2d_array;
 @group(1) @binding(1) var own_sampler: sampler;
 

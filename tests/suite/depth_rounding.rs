@@ -13,6 +13,7 @@ use crate::support::random::Random;
 use crate::support::readback;
 use crate::support::scene::{Mesh, Scene};
 use crate::support::table;
+use crate::support::view_member::member;
 
 const MAP_SIZE: u32 = 256;
 
@@ -59,14 +60,16 @@ impl Sheet {
         };
         record(gpu, shadow, &frame);
         let view = shadow.maps().view_uniforms()[0];
-        let texel_from_anchor: DMat4 = Mat4::from_cols_array_2d(&view.texel_from_anchor).as_dmat4();
-        let anchor = Vec3::from_array(view.anchor).as_dvec3();
+        let texel_from_anchor: DMat4 =
+            Mat4::from_cols_array_2d(&member(&view, "texel_from_anchor")).as_dmat4();
+        let anchor = Vec3::from_array(member(&view, "anchor")).as_dvec3();
         let corners = self.scene.triangles[0].0;
         let [a, b, c] = corners.map(|at| texel_from_anchor.transform_point3(at - anchor));
         let normal = (b - a).cross(c - a);
         let gradient = DVec2::new(-normal.x / normal.z, -normal.y / normal.z);
         let steep = gradient.abs().element_sum();
-        let allowed = f64::from(view.depth_error) + f64::from(view.lateral_error) * steep;
+        let error = |name| f64::from(member::<f32>(&view, name));
+        let allowed = error("depth_error") + error("lateral_error") * steep;
         let depths = readback::depth_layer(gpu, shadow.maps().texture(), 0);
         let (mut worst, mut count) = (0.0_f64, 0);
         for (index, stored) in (0_u32..).zip(depths).filter(|(_, stored)| *stored > 0.0) {

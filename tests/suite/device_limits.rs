@@ -18,7 +18,7 @@ use crate::support::gpu::{Gpu, GpuRequest};
 use crate::support::picture::{color_pass, color_target};
 use crate::support::scene::Mesh;
 
-const VIEW_BYTES: u64 = size_of::<ShadowViewUniform>() as u64;
+const VIEW_BYTES: u64 = ShadowViewUniform::SIZE_BYTES;
 
 fn device(lower: impl FnOnce(&mut wgpu::Limits)) -> Gpu {
     let mut limits = wgpu::Limits::default();

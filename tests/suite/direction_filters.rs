@@ -20,6 +20,7 @@ use crate::support::random::Random;
 use crate::support::readback;
 use crate::support::rounding::{Band, U, band};
 use crate::support::scene::{Mesh, Scene};
+use crate::support::view_member::member;
 
 const MAP_SIZE: u32 = 120;
 const LIGHT: DVec3 = DVec3::new(0.25, 0.5, -0.125);
@@ -176,7 +177,8 @@ fn compare(filter: Filter, bias: Bias, with_camera: bool) {
     let report = record_omni(gpu, &mut shadow, &frame).expect("a valid frame");
     assert_eq!(report.passes, 6);
     // The eye as the uniform has it.
-    let viewer = Vec3::from_slice(&shadow.maps().view_uniforms()[0].viewer[..3]).as_dvec3();
+    let viewer: [f32; 4] = member(&shadow.maps().view_uniforms()[0], "viewer");
+    let viewer = Vec3::from_slice(&viewer[..3]).as_dvec3();
     let twin = Twin {
         uniforms: shadow.maps().view_uniforms().to_vec(),
         faces: (0..6)

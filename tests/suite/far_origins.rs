@@ -15,6 +15,7 @@ use crate::support::gpu::gpu;
 use crate::support::probe::{Point, SunProbe};
 use crate::support::report::assert_whole;
 use crate::support::scene::{Mesh, Scene, Triangle, default_pipeline, occluded};
+use crate::support::view_member::member;
 
 /// A slab close above the floor, both in units of `unit`.
 const SLAB_HALF: f32 = 2.5;
@@ -55,17 +56,19 @@ fn assert_finite<'a>(
         assert!(view.anchor_render().is_finite(), "{what}: {view:?}");
     }
     for uniform in uniforms {
-        let rows = [
-            uniform.plane_across,
-            uniform.plane_down,
-            uniform.plane_depth,
-            uniform.light,
-            uniform.inner,
+        let names = [
+            "plane_across",
+            "plane_down",
+            "plane_depth",
+            "light",
+            "inner",
         ];
-        let mut numbers = rows.iter().chain(&uniform.texel_from_anchor).flatten();
-        let finite = numbers.all(|number| number.is_finite());
+        let rows = names.map(|name| member::<[f32; 4]>(uniform, name));
+        let columns: [[f32; 4]; 4] = member(uniform, "texel_from_anchor");
+        let anchor: [f32; 3] = member(uniform, "anchor");
+        let mut numbers = rows.iter().chain(&columns).flatten().chain(&anchor);
         assert!(
-            finite && uniform.anchor.iter().all(|number| number.is_finite()),
+            numbers.all(|number| number.is_finite()),
             "{what}: {uniform:?}"
         );
     }

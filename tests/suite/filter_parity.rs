@@ -20,6 +20,7 @@ use crate::support::random::Random;
 use crate::support::readback;
 use crate::support::rounding::{Band, U, band};
 use crate::support::scene::{Mesh, Scene};
+use crate::support::view_member::member;
 
 pub(super) const BIASES: [Bias; 3] = [
     Bias::Auto,
@@ -148,11 +149,11 @@ pub(super) fn place(point: &Point) -> (DVec3, DVec3) {
 
 /// Is a place so close to a border of what the map covers that rounding decides on which side it is?
 pub(super) fn at_border(view: &ShadowViewUniform, position: DVec3, band: &Band) -> bool {
-    let relative = position - Vec3::from_array(view.anchor).as_dvec3();
-    let texel_from_anchor = Mat4::from_cols_array_2d(&view.texel_from_anchor).as_dmat4();
+    let relative = position - Vec3::from_array(member(view, "anchor")).as_dvec3();
+    let texel_from_anchor = Mat4::from_cols_array_2d(&member(view, "texel_from_anchor")).as_dmat4();
     let place = texel_from_anchor * relative.extend(1.0);
     let texel = place.truncate().truncate() / place.w;
-    let inner: DVec4 = Vec4::from_array(view.inner).as_dvec4();
+    let inner: DVec4 = Vec4::from_array(member(view, "inner")).as_dvec4();
     let low = (texel - DVec2::new(inner.x, inner.y)).abs();
     let high = (texel - DVec2::new(inner.z, inner.w)).abs();
     low.cmple(band.texel).any() || high.cmple(band.texel).any() || place.z.abs() <= band.depth

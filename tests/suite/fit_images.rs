@@ -19,6 +19,7 @@ use crate::support::random_scene::{Placed, World, world};
 use crate::support::rounding::band;
 use crate::support::scene::occluded;
 use crate::support::table;
+use crate::support::view_member::member;
 
 const MAP_SIZE: u32 = 192;
 /// The default.
@@ -80,7 +81,8 @@ fn texel_error(placed: &Placed, place: DVec3) -> f64 {
         let band = band(&view, FILTER, Bias::Auto, position, DVec3::Y, &twin);
         let rounding = band.expect("a floor that is not edge on").texel;
         let size = placed.report.views[layer].texel_size_world.min_element();
-        rounding.element_sum() + std::f64::consts::SQRT_2 * f64::from(view.offset_world / size)
+        let offset: f32 = member(&view, "offset_world");
+        rounding.element_sum() + std::f64::consts::SQRT_2 * f64::from(offset / size)
     })
 }
 

@@ -15,6 +15,7 @@ use crate::support::random::Random;
 use crate::support::readback;
 use crate::support::scene::{Mesh, Scene, occluded};
 use crate::support::table;
+use crate::support::view_member::member;
 
 const LIGHT: Vec3 = Vec3::new(0.3, -1.0, 0.2);
 const MAP_SIZE: u32 = 128;
@@ -148,7 +149,9 @@ fn the_border_is_where_the_kernel_ends() {
             let ndc = (clip * place.extend(1.0)).truncate().truncate();
             from_side((ndc + 1.0) * (0.5 * f64::from(MAP_SIZE)))
         };
-        let center = Vec3::from_array(uniform.anchor).as_dvec3().with_y(0.0);
+        let center = Vec3::from_array(member(&uniform, "anchor"))
+            .as_dvec3()
+            .with_y(0.0);
         for direction in [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::new(1.0, 0.0, -1.0)] {
             // Far enough to leave the map for sure.
             let way = f64::from(view.texel_size_world().max_element()) * f64::from(MAP_SIZE) * 1.25;
@@ -164,7 +167,8 @@ fn the_border_is_where_the_kernel_ends() {
             // 1e-4 texels are more than f32 errs by in a map of this size (`support/rounding.rs`).
             assert!(last >= reach - 1e-4, "{}: {last} < {reach}", hall.name);
             // |nx| + |ny| of the normal is at most the square root of two.
-            let sideways = f64::from(uniform.offset_texels) * std::f64::consts::SQRT_2;
+            let sideways =
+                f64::from(member::<f32>(&uniform, "offset_texels")) * std::f64::consts::SQRT_2;
             let next = stands(places[first_lit]);
             assert!(
                 next <= reach + sideways + 0.05,

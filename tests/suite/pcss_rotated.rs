@@ -11,6 +11,7 @@ use crate::support::frames::{Coverage, DirectionalFrame};
 use crate::support::gpu::gpu;
 use crate::support::probe::record;
 use crate::support::scene::{Mesh, Scene};
+use crate::support::view_member::member;
 
 /// Widths within 10 % of the closed form and rmse at most 0.05, as of the fixed pattern.
 #[test]
@@ -66,11 +67,12 @@ fn the_grain_is_fixed_in_the_world() {
         if !reference::holds(view, place) || at_border {
             continue;
         }
-        let first = [view.grid & 0xffff, view.grid >> 16].map(i64::from);
+        let grid: u32 = member(view, "grid");
+        let first = [grid & 0xffff, grid >> 16].map(i64::from);
         let texel = at.texel.floor().as_i64vec2();
         let cell = [first[0] + texel.x, first[1] + texel.y].map(|c| c.rem_euclid(65_536));
         cells.push((report.views[0].texel_size_world, cell));
-        windows.push(view.grid);
+        windows.push(grid);
     }
     windows.dedup();
     assert!(windows.len() > 5, "{} windows", windows.len());

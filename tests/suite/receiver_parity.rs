@@ -12,7 +12,7 @@ use crate::support::rounding::band;
 
 /// A receiver as two vectors: texel, depth, covered or not; gradient.
 const RAW: &str = "
-@group(1) @binding(0) var<uniform> view: ShadowView;
+@group(1) @binding(0) var<uniform> view: ShadowViewUniform;
 
 fn raw(receiver: ShadowReceiver) -> array<vec4<f32>, 2> {
     let inside = select(0.0, 1.0, receiver.inside);

@@ -6,6 +6,7 @@ use wgpu_shadows::reference::{DepthLayer, Receiver, holds, receiver, visibility,
 use wgpu_shadows::{Bias, Filter, ShadowViewUniform};
 
 use crate::support::random::Random;
+use crate::support::view_member::with_member;
 
 const FILTERS: [Filter; 11] = [
     Filter::Nearest,
@@ -165,10 +166,8 @@ fn any_uniform_has_a_receiver() {
                 _ => random.bits() as u32,
             };
         }
-        let view = ShadowViewUniform {
-            map_size: SIZES[case % SIZES.len()] as f32,
-            ..bytemuck::pod_read_unaligned(bytemuck::cast_slice(&words))
-        };
+        let view = bytemuck::pod_read_unaligned(bytemuck::cast_slice(&words));
+        let view = with_member(view, "map_size", SIZES[case % SIZES.len()] as f32);
         let (position, normal) = (any_vector(&mut random), any_vector(&mut random));
         let share = weight(&view, position);
         assert!((0.0..=1.0).contains(&share), "{share} of {view:?}");

@@ -109,7 +109,8 @@ fn the_table_is_the_directory() {
         for entry in fs::read_dir(&directory).expect("the wgsl directory") {
             let path = entry.expect("a directory entry").path();
             if path.is_dir() {
-                assert_eq!(path, root.join("pass"), "an unknown directory of shaders");
+                let known = ["pass", "template"].map(|name| root.join(name));
+                assert!(known.contains(&path), "an unknown directory of shaders");
                 continue;
             }
             let name = path.file_stem().and_then(|stem| stem.to_str());
@@ -123,6 +124,51 @@ fn the_table_is_the_directory() {
     let in_table: BTreeSet<String> = MODULES.iter().map(|m| m.name.to_owned()).collect();
     assert_eq!(in_table.len(), MODULES.len(), "a name appears twice");
     assert_eq!(in_table, on_disk);
+}
+
+/// With the declarations of their holes, the templates of a light's functions are valid WGSL as they stand: each that selects a
+/// view with each that looks the visibility up. All declare what is the library's, so that no light takes a name of an engine's.
+#[test]
+fn templates_validate_as_they_stand() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("wgsl/template");
+    let (mut shared, mut selections, mut lookups) = (Vec::new(), Vec::new(), Vec::new());
+    let mut failures = Vec::new();
+    for entry in fs::read_dir(&folder).expect("the folder of templates") {
+        let path = entry.expect("a directory entry").path();
+        let name = path.file_name().and_then(|name| name.to_str());
+        let name = name.expect("a UTF-8 file name").to_owned();
+        let text = fs::read_to_string(&path).expect("a readable file");
+        let declared = wgsl::top_level_names(&text);
+        let foreign = |declared: &&String| !declared.to_lowercase().starts_with("shadow_");
+        // The name of a sampler is filled in as a whole.
+        if let Some(foreign) = declared.iter().find(foreign)
+            && !["holes.wgsl", "sampler.wgsl"].contains(&&*name)
+        {
+            failures.push(format!("{name}: {foreign} is not the library's"));
+        }
+        let kind = if declared.contains("shadow_view_NAME") {
+            &mut selections
+        } else if declared.contains("shadow_NAME") {
+            &mut lookups
+        } else {
+            &mut shared
+        };
+        kind.push((name, text));
+    }
+    assert!(!selections.is_empty() && !lookups.is_empty() && !shared.is_empty());
+    let modules = ["view", "cube_face", "filter_direction"];
+    let modules = shader::compose(&modules).expect("modules of the table");
+    for (selection, selecting) in &selections {
+        for (lookup, looking_up) in &lookups {
+            let mut source = modules.clone();
+            source.extend(shared.iter().map(|(_, text)| text.as_str()));
+            source.extend([selecting.as_str(), looking_up]);
+            if let Err(error) = wgsl::validate(&source) {
+                failures.push(format!("{selection} with {lookup}: {error}"));
+            }
+        }
+    }
+    report(&failures);
 }
 
 /// What lets the texts be concatenated with an engine's, and loaded as WESL or naga_oil modules as they are.

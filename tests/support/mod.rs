@@ -23,6 +23,7 @@ pub mod scene;
 pub mod table;
 pub mod texture_bytes;
 pub mod triangles;
+pub mod view_member;
 pub mod watched;
 pub mod wgsl;
 pub mod wgsl_operators;

@@ -9,6 +9,8 @@ use glam::{DVec2, DVec3, Mat4, Vec3, Vec4};
 use wgpu_shadows::reference::Receiver;
 use wgpu_shadows::{Bias, Filter, ShadowViewUniform};
 
+use crate::support::view_member::member;
+
 /// Unit roundoff of f32.
 pub const U: f64 = 1.0 / (1u64 << 24) as f64;
 
@@ -30,9 +32,10 @@ pub fn band(
     normal: DVec3,
     receiver: &Receiver,
 ) -> Option<Band> {
-    let relative = position - Vec3::from_array(view.anchor).as_dvec3();
-    let rows = [view.plane_across, view.plane_down, view.plane_depth];
-    let rows = rows.map(|row| Vec4::from_array(row).as_dvec4());
+    let number = |name| f64::from(member::<f32>(view, name));
+    let relative = position - Vec3::from_array(member(view, "anchor")).as_dvec3();
+    let rows = ["plane_across", "plane_down", "plane_depth"];
+    let rows = rows.map(|row| Vec4::from_array(member(view, row)).as_dvec4());
     let homogeneous = normal.extend(-normal.dot(relative));
     let magnitude = normal.abs().extend(2.0 * normal.abs().dot(relative.abs()));
     let plane = DVec3::from_array(rows.map(|row| row.dot(homogeneous)));
@@ -41,7 +44,7 @@ pub fn band(
     let (moved, moved_error) = match bias {
         // A product of three factors, one of them a sum of two plane components.
         Bias::Auto | Bias::NormalOffset => {
-            let texels = f64::from(view.offset_texels) + f64::from(view.lateral_error);
+            let texels = number("offset_texels") + number("lateral_error");
             let moved = texels * (plane.x.abs() + plane.y.abs());
             (
                 moved,
@@ -50,13 +53,13 @@ pub fn band(
         }
         // A normalisation (a reciprocal root within two ulps), a product, and the cosine's own four roundings.
         _ => {
-            let moved = f64::from(view.manual_constant + 2.0 * view.manual_slope);
+            let moved = number("manual_constant") + 2.0 * number("manual_slope");
             (moved, 16.0 * U * moved)
         }
     };
     let reach = relative.abs() + DVec3::splat(moved);
     let position_error = 2.0 * U * reach + DVec3::splat(moved_error);
-    let matrix = Mat4::from_cols_array_2d(&view.texel_from_anchor);
+    let matrix = Mat4::from_cols_array_2d(&member(view, "texel_from_anchor"));
     let place_error = |row: usize| {
         let row = matrix.row(row).as_dvec4().abs();
         6.0 * U * row.dot(reach.extend(1.0)) + row.truncate().dot(position_error)
@@ -75,7 +78,7 @@ pub fn band(
         DVec2::ZERO
     };
     // The slack for rounding is itself a product and a sum.
-    let lateral = f64::from(view.lateral_error);
+    let lateral = number("lateral_error");
     let steep = receiver.gradient.abs().element_sum();
     let slack = lateral * gradient.element_sum() + 6.0 * U * (lateral * steep + 1.0);
     Some(Band {

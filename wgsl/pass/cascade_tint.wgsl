@@ -10,7 +10,7 @@ struct ShadowTint {
 }
 
 @group(0) @binding(0) var<uniform> shadow_tint: ShadowTint;
-@group(0) @binding(1) var<uniform> shadow_tint_views: array<ShadowView, 8>;
+@group(0) @binding(1) var<uniform> shadow_tint_views: array<ShadowViewUniform, 8>;
 @group(0) @binding(2) var shadow_tint_depth: texture_2d<f32>;
 @group(0) @binding(3) var shadow_tint_sampler: sampler;
 

@@ -9,12 +9,12 @@ struct ShadowDebugView {
 }
 
 @group(0) @binding(0) var<uniform> shadow_debug: ShadowDebugView;
-@group(0) @binding(1) var<uniform> shadow_debug_views: array<ShadowView, 6>;
+@group(0) @binding(1) var<uniform> shadow_debug_views: array<ShadowViewUniform, 6>;
 @group(0) @binding(2) var shadow_debug_map: texture_2d_array<f32>;
 @group(0) @binding(3) var shadow_debug_sampler: sampler;
 
 // Distance from the light as a share of its reach, for the ray through `texel`.
-fn shadow_debug_grey(view: ShadowView, texel: vec2<f32>, ray: vec3<f32>) -> f32 {
+fn shadow_debug_grey(view: ShadowViewUniform, texel: vec2<f32>, ray: vec3<f32>) -> f32 {
     let last = view.map_size - 1.0;
     let inside = clamp(floor(texel), vec2<f32>(0.0), vec2<f32>(last));
     let center = (inside + 0.5) / view.map_size;

@@ -11,6 +11,7 @@ use crate::support::frames::Coverage;
 use crate::support::gpu::gpu;
 use crate::support::random_scene::World;
 use crate::support::scene::Mesh;
+use crate::support::view_member::member;
 
 const LIGHT: DVec3 = DVec3::new(0.5, -1.0, 0.35);
 
@@ -67,7 +68,11 @@ fn cascaded(cascades: u32, split: CascadeSplit, world: &World, meshes: &[Mesh]) 
     let layers = report.views.iter().map(|view| view.layer);
     assert!(layers.eq(0..cascades), "one report a layer");
     let uniforms = sun.shadow.maps().view_uniforms();
-    assert!(uniforms.iter().all(|view| view.layer < cascades));
+    assert!(
+        uniforms
+            .iter()
+            .all(|view| member::<u32>(view, "layer") < cascades)
+    );
     sun
 }
 

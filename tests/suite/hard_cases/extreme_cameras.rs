@@ -9,6 +9,7 @@ use crate::support::camera::{Camera, Lens, Pose};
 use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};
 use crate::support::gpu::gpu;
 use crate::support::report::assert_whole;
+use crate::support::view_member::member;
 
 /// Every lens with its name, and whether it is a camera that engines have.
 fn lenses() -> Vec<(String, Lens, bool)> {
@@ -92,10 +93,11 @@ fn any_lens_is_fitted_or_refused() {
                 Ok(()) => {
                     taken += 1;
                     for view in sun.shadow.maps().view_uniforms() {
-                        let numbers: &[f32] = bytemuck::cast_slice(&view.texel_from_anchor);
-                        let planes = [view.plane_across, view.plane_down, view.plane_depth];
-                        let planes: &[f32] = bytemuck::cast_slice(&planes);
-                        let mut all = numbers.iter().chain(planes).chain(&view.anchor);
+                        let columns: [[f32; 4]; 4] = member(view, "texel_from_anchor");
+                        let planes = ["plane_across", "plane_down", "plane_depth"];
+                        let planes = planes.map(|name| member::<[f32; 4]>(view, name));
+                        let anchor: [f32; 3] = member(view, "anchor");
+                        let mut all = columns.iter().chain(&planes).flatten().chain(&anchor);
                         assert!(all.all(|number| number.is_finite()), "{name}: {view:?}");
                     }
                     assert!(seen.iter().all(|seen| (0.0..=1.0).contains(seen)), "{name}");

@@ -13,6 +13,7 @@ use crate::support::frames::Coverage;
 use crate::support::probe::Point;
 use crate::support::random::Random;
 use crate::support::rounding::U;
+use crate::support::view_member::with_member;
 
 const MAP_SIZE: u32 = 256;
 const FLOOR_HALF: f32 = 7.4;
@@ -51,7 +52,7 @@ fn look_along(
         .collect();
     // The grid of turned patterns is the world's own, and so the one thing that tells places apart.
     let uniforms = sun.shadow.maps().view_uniforms().iter();
-    let uniforms = uniforms.map(|view| ShadowViewUniform { grid: 0, ..*view });
+    let uniforms = uniforms.map(|view| with_member(*view, "grid", 0_u32));
     (sun.ask(&points), uniforms.collect())
 }
 

@@ -9,14 +9,15 @@ use wgpu_shadows::{Aabb, ShadowViewUniform};
 
 use super::fuzz_values::{bias, bounds, filter, matrix, number, run, vector};
 use super::table;
+use crate::support::view_member::{member, with_member};
 
 /// Uniforms of any numbers, and whole sizes of maps as often.
 fn uniform() -> impl Strategy<Value = ShadowViewUniform> {
     let words = size_of::<ShadowViewUniform>() / 4;
     let size = prop_oneof![(1..8_u8).prop_map(f32::from), number()];
-    (prop::collection::vec(number(), words), size).prop_map(|(numbers, size)| ShadowViewUniform {
-        map_size: size,
-        ..bytemuck::pod_read_unaligned(bytemuck::cast_slice(&numbers))
+    (prop::collection::vec(number(), words), size).prop_map(|(numbers, size)| {
+        let view = bytemuck::pod_read_unaligned(bytemuck::cast_slice(&numbers));
+        with_member(view, "map_size", size)
     })
 }
 
@@ -40,7 +41,7 @@ fn any_numbers_in_the_reference_get_a_visibility() {
             depth: f64::from(texel.z),
             gradient: gradient.truncate().as_dvec2(),
             penumbra: DVec2::splat(f64::from(gradient.z)),
-            grid: view.grid,
+            grid: member(&view, "grid"),
             inside: true,
         };
         let twin = receiver(&view, filter, bias, position, normal);

@@ -1,0 +1,2 @@
+
+const SHADOW_GROUP: u32 = GROUP;

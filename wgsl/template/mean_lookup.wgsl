@@ -1,0 +1,27 @@
+
+// Returns the light's visibility in [0, 1] from a position of render space; 1 beyond the light's range.
+//
+// It is the mean of samples in directions around the position's own, each looked up on the face of the cube that it meets.
+fn shadow_NAME(INDEX: u32, position: vec3<f32>, normal: vec3<f32>) -> f32 {
+    let light = shadow_views_NAME[ANY_VIEW];
+    let from_light = position - light.anchor;
+    // The distance, which varies, stands on the left, and the uniform on the right, because of the driver that
+    // `shadow_view_holds` describes.
+    if length(from_light) >= light.range {
+        return 1.0;
+    }
+    let radius = shadow_direction_PATTERN_radius(light, position);
+    var lit = 0.0;
+    for (var i = 0u; i < SAMPLE_COUNT; i++) {
+        let offset = shadow_direction_PATTERN(i) * radius;
+        let place = shadow_direction_on_SURFACE(from_light, NORMAL, offset) + light.anchor;
+        let view = shadow_view_NAME(INDEX, place);
+        if view == VIEW_COUNT {
+            lit += 1.0;
+        } else {
+            let receiver = shadow_receiver_BIAS(shadow_views_NAME[view], place, normal);
+            lit += shadow_FILTER(shadow_map_NAME, SAMPLER, receiver);
+        }
+    }
+    return lit / SAMPLE_COUNT_F32;
+}

@@ -1,0 +1,10 @@
+
+// Returns the light's visibility in [0, 1] from a position of render space; 1 where no view serves it.
+fn shadow_NAME(INDEX: u32, position: vec3<f32>, normal: vec3<f32>) -> f32 {
+    let view = shadow_view_NAME(INDEX, position);
+    if view == VIEW_COUNT {
+        return 1.0;
+    }
+    let receiver = shadow_receiver_BIAS(shadow_views_NAME[view], position, normal);
+    return shadow_FILTER(shadow_map_NAME, SAMPLER, receiver);
+}
