@@ -12,9 +12,9 @@ use crate::fit::visible::{self, Seen};
 
 /// Is the largest distance in texels from the highest receiver to the near plane for the sake of casters whose bounds
 /// reach from there to below all receivers. So one object with bounds of a million kilometres does not take the depth's
-/// precision from all others: depths are f32, and their rounding comes to one and a half texels at this range. It is 42
-/// km for texels of one centimetre; of such casters, what is nearer to the light casts nothing.
-const MAX_TEXELS_TO_NEAR: f64 = (1 << 22) as f64;
+/// precision from all others: depths are f32, and their rounding comes to three texels at this range. It is 84 km for
+/// texels of one centimetre; of such casters, what is nearer to the light casts nothing.
+const MAX_TEXELS_TO_NEAR: f64 = (1 << 23) as f64;
 
 /// Is the largest share of a map's side that the height of a part above its receivers must reach to make the map cover
 /// the part: coarse maps show shadows that are smaller than the gap that the bias admits.

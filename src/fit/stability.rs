@@ -1,7 +1,7 @@
 //! Selects whether a cascade's extent may follow what is seen, or does not change at all.
 
 /// Selects how a cascade's extent follows the camera. In both cases edges of shadows keep their positions in the world
-/// while the extent does not change: map rectangles move by whole texels. The default is `Rungs`.
+/// while the extent does not change: map rectangles move by whole texels. The default is `TightFit`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stability {

@@ -1,6 +1,6 @@
 //! `DirectionalShadow`: the sun.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use crate::cast::{FrameCasters, ViewDraws};
 use crate::check;
@@ -12,7 +12,7 @@ use crate::receive::{
     check_bias, check_planar_filter,
 };
 use crate::{
-    Bias, CascadeSplit, DepthFormat, Filter, ShadowError, ShadowFrame, ShadowView, Stability,
+    Aabb, Bias, CascadeSplit, DepthFormat, Filter, ShadowError, ShadowFrame, ShadowView, Stability,
 };
 
 /// What a [`DirectionalShadow`] is made of.
@@ -285,10 +285,9 @@ impl DirectionalShadow {
 const LARGE_TRIANGLE_ROUNDING: f64 = 2.0;
 
 /// Returns the largest render coordinate from which depths in the view are computed. Rasterisers interpolate between
-/// the corners of a triangle, and each is rounded where it is: a triangle that is larger than the view brings the
-/// rounding of corners far outside it. The size of a caster's triangles is taken to be that of as many equal ones that
-/// cover its bounds, or its bounds where their number is not known. Bounds on all sides of the view say nothing: they are
-/// those of a terrain that is made of many triangles, or wrong.
+/// the corners of a triangle, and each is rounded where it is: a triangle whose corners are far outside the view brings
+/// their rounding into it. The size of a caster's triangles is taken to be that of as many equal ones that cover its
+/// bounds, or its bounds where their number is not known.
 fn depth_reach(
     view: &ShadowView,
     input: &FitInput<'_>,
@@ -296,24 +295,32 @@ fn depth_reach(
     drawn: &[u32],
 ) -> f64 {
     let mut reach = view.render_reach();
-    let radius = reach - f64::from(view.anchor_render().abs().max_element());
     let center = view.anchor_render().as_dvec3();
+    let radius = reach - center.abs().max_element();
     for &caster in drawn {
         let bounds = &input.casters[caster as usize];
-        let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
-        if min.cmplt(center - radius).all() && max.cmpgt(center + radius).all() {
+        let corners_away = corners_away(bounds, center, radius);
+        if corners_away <= radius {
             continue;
         }
-        let farthest = bounds.min.abs().max(bounds.max.abs()).as_dvec3().length();
-        let farthest = LARGE_TRIANGLE_ROUNDING * farthest;
-        if farthest <= reach {
-            continue;
-        }
-        let diagonal = (max - min).length();
+        let diagonal = (bounds.max.as_dvec3() - bounds.min.as_dvec3()).length();
         let pairs = f64::from(casters.facts(caster).triangles.max(2)) * 0.5;
-        reach = farthest
-            .min(view.render_reach() + diagonal / pairs.sqrt())
-            .max(reach);
+        let away = corners_away.min(diagonal / pairs.sqrt());
+        reach = reach.max(view.render_reach() + LARGE_TRIANGLE_ROUNDING * away);
     }
     reach
+}
+
+/// Returns the distance from `center` of the fourth nearest corner of a box, which is that of a whole side: near the
+/// foot of a high tower, depths follow from the corners at its foot. A box on all sides of the view (a sphere of
+/// `radius`) says nothing, and 0 is returned: it is that of a terrain of many triangles, or it is wrong.
+fn corners_away(bounds: &Aabb, center: DVec3, radius: f64) -> f64 {
+    let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+    if min.cmplt(center - radius).all() && max.cmpgt(center + radius).all() {
+        return 0.0;
+    }
+    let mut distances: [f64; 8] =
+        std::array::from_fn(|corner| bounds.corner(corner).as_dvec3().distance(center));
+    distances.sort_unstable_by(f64::total_cmp);
+    distances[3]
 }
