@@ -268,9 +268,16 @@ impl DirectionalShadow {
         }
         Ok(views)
     }
+
     /// Returns the light's depth texture, uniforms and report.
     pub fn maps(&self) -> &ShadowMaps {
         &self.maps
+    }
+
+    /// Forgets the extents of earlier frames, which otherwise shrink only after some time, so that what moves does not
+    /// change the texels of what stands still. Call it where the camera cuts to another scene.
+    pub fn reset_history(&mut self) {
+        self.fit = DirectionalFit::default();
     }
 
     /// Says that the maps no longer hold what was recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)): the

@@ -88,6 +88,13 @@ impl LocalLights {
         self.maps.invalidate();
     }
 
+    /// Forgets the extents of earlier frames.
+    pub fn reset_history(&mut self) {
+        self.slots
+            .iter_mut()
+            .for_each(|slot| slot.fit.reset_history());
+    }
+
     /// Forgets the light of a slot.
     pub fn reset(&mut self, slot: u32) {
         self.slots[slot as usize] = SlotState::default();

@@ -121,6 +121,12 @@ impl OmniShadow {
         self.lights.maps()
     }
 
+    /// Forgets the extents of earlier frames, which otherwise shrink only after some time, so that what moves does not
+    /// change the texels of what stands still. Call it where the camera cuts to another scene.
+    pub fn reset_history(&mut self) {
+        self.lights.reset_history();
+    }
+
     /// Says that the maps no longer hold what was recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)): the
     /// next frame draws every view.
     pub fn invalidate(&mut self) {

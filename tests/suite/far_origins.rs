@@ -207,6 +207,7 @@ fn scan(case: &Case, scene: &Scene, casters: &[MeshCaster]) -> usize {
         let what = format!("{} at {origin}", case.words());
         // The casters stand still in render space, so each origin puts them elsewhere in the world, of which they say nothing.
         shadow.invalidate();
+        shadow.reset_history();
         let frame = DirectionalFrame {
             origin,
             light: DirectionalLight::new(case.direction),

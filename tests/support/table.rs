@@ -48,6 +48,7 @@ const TOPICS: [(&str, &[&str]); 8] = [
             "fit_images",
             "cascades",
             "steady",
+            "moving_casters",
         ],
     ),
     ("Borders of maps", &["out_of_range", "borders"]),

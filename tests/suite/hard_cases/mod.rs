@@ -21,6 +21,7 @@ mod layers;
 mod light_axes;
 mod long_run;
 mod meshes;
+mod moving_casters;
 mod near_lights;
 mod near_plane;
 mod scales;
