@@ -59,6 +59,7 @@ const TOPICS: [(&str, &[&str]); 8] = [
             "degenerate",
             "fuzz",
             "fuzz_reference",
+            "fuzz_untidy",
             "fuzz_values",
         ],
     ),

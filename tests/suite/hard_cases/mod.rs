@@ -15,6 +15,7 @@ mod fuzz_bindings;
 mod fuzz_casters;
 mod fuzz_pools;
 mod fuzz_reference;
+mod fuzz_untidy;
 mod fuzz_values;
 mod grounds;
 mod layers;
