@@ -47,6 +47,9 @@ struct ShadowViewUniform {
     fade_texels: f32,
     // Where the first texel lies in a grid that is fixed in the world, modulo 65536: x in the low half, y in the high.
     grid: u32,
+    // Where shadows end. For a directional light a plane: its product with a position is above one where shadows are whole and
+    // below zero where they have ended. For a local light: x times the distance from the light is taken from w for the same.
+    limit: vec4<f32>,
 }
 
 struct ShadowReceiver {
@@ -96,6 +99,27 @@ fn shadow_view_weight(view: ShadowViewUniform, position: vec3<f32>) -> f32 {
     let texel = place.xy / place.w;
     let from_border = min(texel - view.inner.xy, view.inner.zw - texel);
     return clamp(min(from_border.x, from_border.y) / view.fade_texels, 1.0 / 4096.0, 1.0);
+}
+
+// Returns `visibility` faded to light toward the end of a directional light's shadows. A position that is not a number is lit.
+fn shadow_limited_by_depth(view: ShadowViewUniform, position: vec3<f32>, visibility: f32) -> f32 {
+    return shadow_faded(dot(view.limit.xyz, position) + view.limit.w, visibility);
+}
+
+// Returns `visibility` faded to light toward the end of a local light's range.
+fn shadow_limited_by_distance(view: ShadowViewUniform, position: vec3<f32>, visibility: f32) -> f32 {
+    return shadow_faded(view.limit.w - view.limit.x * length(position - view.anchor), visibility);
+}
+
+// Returns `visibility` as it is.
+fn shadow_not_limited(view: ShadowViewUniform, position: vec3<f32>, visibility: f32) -> f32 {
+    return visibility;
+}
+
+// Returns `visibility` at a weight of one or more, and light at zero or less. The selection makes a weight that is not a number
+// light.
+fn shadow_faded(weight: f32, visibility: f32) -> f32 {
+    return 1.0 - select(0.0, min(weight, 1.0) * (1.0 - visibility), weight > 0.0);
 }
 
 // The receiver of a place in render space that the bias has moved to `moved`, relative to the anchor, with `depth_offset`

@@ -5,11 +5,12 @@ use glam::{DVec3, Vec3};
 use crate::cast::{FrameCasters, ViewDraws};
 use crate::check;
 use crate::fit::{
-    DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, MAX_CASCADES, Receivers, Region,
+    CameraFrustum, DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, MAX_CASCADES,
+    Receivers, Region,
 };
 use crate::receive::{
-    LayerState, MapsFrame, Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, ShadowReport,
-    check_bias, check_planar_filter,
+    LayerState, MapsFrame, NO_LIMIT, Sampling, Selection, ShadowMaps, ShadowMapsDescriptor,
+    ShadowReport, check_bias, check_fade, check_planar_filter,
 };
 use crate::{
     Aabb, Bias, CascadeSplit, DepthFormat, Filter, ShadowError, ShadowFrame, ShadowView, Stability,
@@ -35,6 +36,9 @@ pub struct DirectionalShadowDescriptor<'a> {
     /// where its map ends, and the edges of shadows widen there at once. A tenth hides that; inside it two maps are looked up.
     /// Too large a share costs lookups and lets the coarser map blur what the finer one holds.
     pub blend: f32,
+    /// Fraction of [`CameraView::max_distance`](crate::CameraView::max_distance), 0..=1, over which shadows fade to light
+    /// before they end there. Default 0: they end at once. Without a distance it has no effect.
+    pub fade: f32,
     /// What may change the extent of a cascade.
     pub stability: Stability,
     /// How the maps store depths. `Unorm16` halves their memory; casters need pipelines for it
@@ -52,6 +56,7 @@ impl Default for DirectionalShadowDescriptor<'_> {
             filter: Filter::default(),
             bias: Bias::Auto,
             blend: 0.0,
+            fade: 0.0,
             stability: Stability::TightFit,
             depth_format: DepthFormat::Float32,
         }
@@ -69,6 +74,7 @@ impl DirectionalShadowDescriptor<'_> {
         filter: Filter::Bilinear { sharpness: 1.0 },
         bias: Bias::Auto,
         blend: 0.0,
+        fade: 0.0,
         stability: Stability::TightFit,
         depth_format: DepthFormat::Float32,
     };
@@ -143,6 +149,7 @@ impl DirectionalShadow {
             (0.0..=0.5).contains(&descriptor.blend),
             descriptor.blend,
         )?;
+        check_fade("DirectionalShadowDescriptor::fade", descriptor.fade)?;
         check_planar_filter("DirectionalShadowDescriptor::filter", descriptor.filter)?;
         check::in_range(
             "DirectionalShadowDescriptor::filter",
@@ -156,6 +163,7 @@ impl DirectionalShadow {
             bias: descriptor.bias,
             depth_format: descriptor.depth_format,
             blend: descriptor.blend,
+            fade: descriptor.fade,
         };
         let maps = ShadowMaps::new(
             device,
@@ -215,8 +223,10 @@ impl DirectionalShadow {
         };
         let fit = self.fit.fit(&input, &self.limits, &mut self.scratch)?;
         let views = self.drawn_views(&fit, &input, &frame.casters)?;
-        let layers: [_; MAX_CASCADES] =
-            std::array::from_fn(|layer| LayerState::directional(layer as u32, fit.slices[layer]));
+        let limit = distance_limit(frame.region, self.maps.sampling().fade);
+        let layers: [_; MAX_CASCADES] = std::array::from_fn(|layer| {
+            LayerState::directional(layer as u32, limit, fit.slices[layer])
+        });
         let maps_frame = MapsFrame {
             views,
             layers: &layers[..self.limits.cascades],
@@ -330,4 +340,30 @@ fn corners_away(bounds: &Aabb, center: DVec3, radius: f64) -> f64 {
         std::array::from_fn(|corner| bounds.corner(corner).as_dvec3().distance(center));
     distances.sort_unstable_by(f64::total_cmp);
     distances[3]
+}
+
+/// Is the least fraction of the distance over which shadows end: less is not told apart from a sharp end.
+const LEAST_FADE: f64 = 1e-4;
+
+/// Is the cosine of the angle between cameras that count as looking the same way, as the eyes of a headset do.
+const SAME_WAY_COSINE: f64 = 0.99;
+
+/// Returns the plane of the uniform at which shadows end: the farthest end of all cameras, if they all have one and look
+/// the same way. Otherwise it is no plane, and shadows end where the maps end.
+fn distance_limit(region: Region<'_>, fade: f32) -> [f32; 4] {
+    let Region::Cameras([first, others @ ..]) = region else {
+        return NO_LIMIT;
+    };
+    let forward = first.forward();
+    let end = |camera: &CameraFrustum| {
+        let same_way = camera.forward().dot(forward) > SAME_WAY_COSINE;
+        let end = -camera.depth(DVec3::ZERO) + camera.max_distance();
+        if same_way { end } else { f64::INFINITY }
+    };
+    let end = others.iter().map(end).fold(end(first), f64::max);
+    if !end.is_finite() {
+        return NO_LIMIT;
+    }
+    let over = first.max_distance() * f64::from(fade).max(LEAST_FADE);
+    (-forward / over).extend(end / over).as_vec4().to_array()
 }

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use crate::cast::ViewDraws;
 use crate::fit::{LightAxes, LocalFit, LocalInput, MAX_LOCAL_VIEWS, Reached};
-use crate::receive::{LayerState, MapsFrame, ShadowMaps, ShadowMapsDescriptor};
+use crate::receive::{LayerState, MapsFrame, NO_LIMIT, ShadowMaps, ShadowMapsDescriptor};
 use crate::{ShadowError, ShadowFrame, ShadowView, report::ShadowReport};
 
 /// Spot or point lights in the slots of one set of maps: a single light has the one slot, a pool has as many as its capacity.
@@ -134,6 +134,7 @@ impl LocalLights {
                 layer: first_layer + view,
                 anchor_render: (position_world - frame.origin).as_vec3(),
                 reach_world,
+                limit: range_limit(light.range, maps.sampling().fade),
                 deferred: !candidate.refreshed,
                 slice: None,
             }));
@@ -275,4 +276,12 @@ impl LocalLights {
 fn border(map_size: u32, border_texels: f64) -> f64 {
     let size = f64::from(map_size);
     size / (size - 2.0 * border_texels.min(size * 0.25))
+}
+
+/// Returns the coefficients of the uniform by which shadows fade toward the end of a light's range.
+fn range_limit(range: f32, fade: f32) -> [f32; 4] {
+    if fade == 0.0 {
+        return NO_LIMIT;
+    }
+    [1.0 / (range * fade), 0.0, 0.0, 1.0 / fade]
 }

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::check;
 use crate::light::local::{LocalLights, LocalPlacement};
 use crate::receive::{
-    Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, check_bias, check_filter,
+    Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, check_bias, check_fade, check_filter,
     check_planar_filter,
 };
 use crate::{Bias, Filter, OmniLight, ShadowError, ShadowFrame, SpotLight, report::ShadowReport};
@@ -24,6 +24,8 @@ pub struct PoolDescriptor<'a> {
     pub filter: Filter,
     /// How receivers are kept from shadowing themselves.
     pub bias: Bias,
+    /// Fraction of a light's range, 0..=1, over which shadows fade to light before they end there. Default 0: they end at once.
+    pub fade: f32,
 }
 
 impl Default for PoolDescriptor<'_> {
@@ -34,6 +36,7 @@ impl Default for PoolDescriptor<'_> {
             map_size: 512,
             filter: Filter::default(),
             bias: Bias::Auto,
+            fade: 0.0,
         }
     }
 }
@@ -150,6 +153,7 @@ macro_rules! pool {
             ) -> Result<Self, ShadowError> {
                 $filter_check("PoolDescriptor::filter", descriptor.filter)?;
                 check_bias("PoolDescriptor::bias", descriptor.bias)?;
+                check_fade("PoolDescriptor::fade", descriptor.fade)?;
                 check::in_range(
                     "PoolDescriptor::capacity",
                     "at least 1",
@@ -164,7 +168,10 @@ macro_rules! pool {
                         size_field: "PoolDescriptor::map_size",
                         lights: descriptor.capacity,
                         layers_field: "PoolDescriptor::capacity",
-                        sampling: Sampling::new(descriptor.filter, descriptor.bias),
+                        sampling: Sampling {
+ fade: descriptor.fade,
+ ..Sampling::new(descriptor.filter, descriptor.bias)
+ },
                         views_per_light: $views,
                         selection: $selection,
                         indexed: true,

@@ -48,12 +48,12 @@ templates! {
     /// `shadow_view_NAME` of a point light.
     CubeFace("cube_face.wgsl") { name, index, first_view, any_view, view_count }
     /// `shadow_NAME` by one lookup in one view.
-    SingleLookup("single_lookup.wgsl") { name, index, view_count, bias, filter, sampler }
+    SingleLookup("single_lookup.wgsl") { name, index, view_count, bias, filter, sampler, limit }
     /// `shadow_NAME` by a lookup in each of the cascades that blend at a position.
-    BlendedLookup("blended_lookup.wgsl") { name, index, view_count, bias, filter, sampler }
+    BlendedLookup("blended_lookup.wgsl") { name, index, view_count, bias, filter, sampler, limit }
     /// `shadow_NAME` by lookups in many directions from a point light.
     MeanLookup("mean_lookup.wgsl") {
-        name, index, any_view, view_count, pattern, sample_count, sample_count_f32, surface, normal, bias, filter, sampler
+        name, index, any_view, view_count, pattern, sample_count, sample_count_f32, surface, normal, bias, filter, sampler, limit
     }
 }
 

@@ -69,6 +69,8 @@ pub struct ShadowViewUniform {
     pub(crate) fade_texels: f32,
     /// Where the first texel lies in a grid that is fixed in the world, modulo 65536: x in the low half, y in the high.
     pub(crate) grid: u32,
+    /// Is where shadows end: a plane for a directional light, coefficients of the distance for a local one.
+    pub(crate) limit: [f32; 4],
 }
 
 impl ShadowViewUniform {
@@ -94,6 +96,8 @@ pub(crate) struct Sampling {
     pub depth_format: DepthFormat,
     /// Share of a cascade's width in which it gives way to the next.
     pub(crate) blend: f32,
+    /// Is the fraction of the distance at which shadows end over which they fade to light.
+    pub(crate) fade: f32,
 }
 
 /// What rounding may move a lookup by: 6uN is 1/350 of a texel at N = 8192.
@@ -107,6 +111,7 @@ impl Sampling {
             bias,
             depth_format: DepthFormat::Float32,
             blend: 0.0,
+            fade: 0.0,
         }
     }
 
@@ -136,6 +141,9 @@ impl Sampling {
     }
 }
 
+/// Limits nothing: the weight of shadows is one everywhere.
+pub(crate) const NO_LIMIT: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
+
 /// A view that nothing casts into: no receiver is inside it. The anchor of a light that lies farther away than f32 reaches is
 /// as far away as f32 does.
 pub(crate) fn empty_view_uniform(layer: u32, anchor_render: Vec3) -> ShadowViewUniform {
@@ -144,6 +152,7 @@ pub(crate) fn empty_view_uniform(layer: u32, anchor_render: Vec3) -> ShadowViewU
         layer,
         anchor: anchor_render.clamp(Vec3::MIN, Vec3::MAX).to_array(),
         map_size: 1.0,
+        limit: NO_LIMIT,
         ..ShadowViewUniform::zeroed()
     }
 }
@@ -188,6 +197,7 @@ pub(crate) fn view_uniform(view: &ShadowView, sampling: &Sampling) -> ShadowView
             .to_array(),
         fade_texels: sampling.blend * view.map_size() as f32,
         grid: view.world_grid(),
+        limit: NO_LIMIT,
     }
 }
 

@@ -50,6 +50,11 @@ fn shadow_FILTER(map: MAP_TYPE, map_sampler: SAMPLER_TYPE, receiver: ShadowRecei
     return 1.0;
 }
 
+// What ends the light's shadows: `limited_by_depth`, `limited_by_distance` or `not_limited`.
+fn shadow_LIMIT(view: ShadowViewUniform, position: vec3<f32>, visibility: f32) -> f32 {
+    return visibility;
+}
+
 // Directions around the receiver's own: `grid` or `star`.
 fn shadow_direction_PATTERN(index: u32) -> vec3<f32> {
     return shadow_direction_grid(index);

@@ -54,6 +54,7 @@ fn any_descriptor_is_taken_or_refused() {
                 split,
                 filter,
                 bias,
+                fade: lambda,
                 blend: lambda,
                 stability: Stability::TightFit,
                 depth_format: DepthFormat::Unorm16,
@@ -64,6 +65,7 @@ fn any_descriptor_is_taken_or_refused() {
                 map_size,
                 filter,
                 bias,
+                fade: lambda,
             };
             counts.count(&SpotShadow::new(device, &spot));
             let lamp = OmniShadowDescriptor {
@@ -71,6 +73,7 @@ fn any_descriptor_is_taken_or_refused() {
                 map_size,
                 filter,
                 bias,
+                fade: lambda,
             };
             counts.count(&OmniShadow::new(device, &lamp));
             let pool = PoolDescriptor {
@@ -79,6 +82,7 @@ fn any_descriptor_is_taken_or_refused() {
                 map_size,
                 filter,
                 bias,
+                fade: lambda,
             };
             counts.count(&SpotShadowPool::new(device, &pool));
             counts.count(&OmniShadowPool::new(device, &pool));
