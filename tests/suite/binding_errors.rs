@@ -158,7 +158,7 @@ fn bindings_beyond_the_devices_limits() {
     assert_eq!(
         error.to_string(),
         format!(
-            "ShadowBindingsDescriptor::lights need {needed} {limit}, and the device has {maximum}"
+            "ShadowBindingsDescriptor::lights: the device's {limit} must be at least {needed}, and it is {maximum}"
         )
     );
 }
@@ -170,7 +170,7 @@ fn modules_that_do_not_exist() {
     assert_eq!(error, BindingsError::UnknownModule { name });
     assert_eq!(
         error.to_string(),
-        "there is no shader module named \"no_such\""
+        "shader::compose: every name must be that of a module in shader::MODULES, got \"no_such\""
     );
 }
 

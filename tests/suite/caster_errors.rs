@@ -94,7 +94,7 @@ fn vertex_layouts_that_cannot_be_read() {
         assert_eq!(
             error.to_string(),
             format!(
-                "{field}: offset {offset} + {size} bytes must lie inside the stride of {array_stride} bytes, both multiples of 4"
+                "{field}: offset {offset} + {size} bytes must lie inside the stride of {array_stride} bytes, and offset and stride must be multiples of 4"
             )
         );
     }
@@ -223,7 +223,9 @@ fn more_bind_groups_than_the_device_takes() {
         assert_eq!(error, wanted);
         assert_eq!(
             error.to_string(),
-            format!("{field} asks for {value}, and the device's max_bind_groups is {maximum}")
+            format!(
+                "{field}: the device's max_bind_groups must be at least {value}, and it is {maximum}"
+            )
         );
     }
 }

@@ -248,7 +248,7 @@ fn lights_with_more_layers_than_the_device_has() {
     assert_eq!(error, over(field, 5));
     assert_eq!(
         error.to_string(),
-        format!("{field} asks for 5, and the device's {limit} is 4")
+        format!("{field}: the device's {limit} must be at least 5, and it is 4")
     );
     DirectionalShadow::new(&gpu.device, &sun_descriptor(4)).expect("four layers");
     let error = OmniShadow::new(&gpu.device, &Default::default()).expect_err("six layers");
@@ -297,7 +297,7 @@ fn uniforms_larger_than_the_device_binds() {
     );
     assert_eq!(
         error.to_string(),
-        format!("DebugView needs {value}, and the device's {limit} is {maximum}")
+        format!("DebugView: the device's {limit} must be at least {value}, and it is {maximum}")
     );
     // A light of a device that binds more.
     let other = device(|_| ());
@@ -335,6 +335,6 @@ fn vertices_that_the_device_does_not_fetch() {
     );
     assert_eq!(
         error.to_string(),
-        format!("{field} asks for 5, and the device's max_vertex_attributes is 4")
+        format!("{field}: the device's max_vertex_attributes must be at least 5, and it is 4")
     );
 }

@@ -85,7 +85,7 @@ fn maps_larger_than_the_device_allows() {
     assert_eq!(
         error.to_string(),
         format!(
-            "DirectionalShadowDescriptor::map_size asks for {}, and the device's max_texture_dimension_2d is {maximum}",
+            "DirectionalShadowDescriptor::map_size: the device's max_texture_dimension_2d must be at least {}, and it is {maximum}",
             maximum + 1
         )
     );

@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// Folders of `src` from the ground up. A folder may use itself and those before it; files that lie loose in `src` are used by
-/// all and stand where they can be reached.
+/// Lists the folders of `src` from the ground up. A folder may use itself and those before it. The files directly in `src`
+/// and those of `src/error` may be used by all, and use what they need.
 const FLOORS: [&str; 6] = ["gpu", "fit", "cast", "receive", "debug", "light"];
 
 /// What the files under `src` take from each other: by file, the files that it names something of.

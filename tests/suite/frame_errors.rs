@@ -291,7 +291,7 @@ fn views_that_f32_cannot_hold() {
         "{error}"
     );
     let message = format!(
-        "the fitted view must be representable, got extent {extent_world} at {distance_world} from the render origin and {coordinate_world} from the world's"
+        "the fitted view must be representable in f32 and f64, got an extent of {extent_world} world units at {distance_world} from the render origin and {coordinate_world} from the world origin"
     );
     assert_eq!(error.to_string(), message);
 }
