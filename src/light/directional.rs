@@ -1,4 +1,4 @@
-//! `DirectionalShadow`: the sun.
+//! Defines `DirectionalShadow`: the shadows of the sun and of other distant lights.
 
 use glam::Vec3;
 
@@ -16,29 +16,37 @@ use crate::{
     Bias, CascadeSplit, DepthFormat, Filter, ShadowError, ShadowFrame, ShadowView, Stability,
 };
 
-/// What a [`DirectionalShadow`] is made of.
+/// Describes what a [`DirectionalShadow`] is made of. [`DirectionalShadow::new`] returns [`ShadowError::OutOfRange`]
+/// for values outside the ranges given here, and [`ShadowError::OverDeviceLimit`] for those beyond the device's limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectionalShadowDescriptor<'a> {
-    /// Label from which all objects derive theirs. Default "directional shadow".
+    /// Is the label from which all wgpu objects of the light derive theirs; "directional shadow" if `None`, the
+    /// default.
     pub label: wgpu::Label<'a>,
-    /// Texels per side of each cascade's map, 1 up to the device's `max_texture_dimension_2d`. Default 2048. Cost and memory
-    /// grow with its square, the blur and misplacement of an edge shrink with it.
+    /// Is the number of texels per side of each cascade's map: from 1 to the device's `max_texture_dimension_2d`. The
+    /// default is 2048. Cost and memory grow with its square; the blur and the displacement of an edge shrink in
+    /// proportion to it.
     pub map_size: u32,
-    /// Cascades, 1..=8, and no more than the device's `max_texture_array_layers`. Default 1, which suits a scene as deep as it is wide; a view to the horizon wants 3 or 4.
+    /// Is the number of cascades: 1..=8, and no more than the device's `max_texture_array_layers`. The default is 1,
+    /// which suits a scene that is as deep as it is wide; a view to the horizon needs 3 or 4. With too few, texels are
+    /// coarse near the camera.
     pub cascades: u32,
-    /// Where one cascade ends and the next begins. Default logarithmic.
+    /// Selects where one cascade ends and the next begins. The default is logarithmic.
     pub split: CascadeSplit<'a>,
-    /// How a map is looked up.
+    /// Selects how a map is sampled. The default is that of [`Filter`]. Filters for point lights only are refused, and
+    /// the light size of [`Filter::Pcss`] and [`Filter::PcssRotated`] is an angular diameter below π.
     pub filter: Filter,
-    /// How receivers are kept from shadowing themselves.
+    /// Selects how receivers are kept from shadowing themselves. The default is [`Bias::Auto`].
     pub bias: Bias,
-    /// Share of a cascade's width, 0..=0.5, over which it gives way to the next toward its border. Default 0: a cascade ends
-    /// where its map ends, and the edges of shadows widen there at once. A tenth hides that; inside it two maps are looked up.
-    /// Too large a share costs lookups and lets the coarser map blur what the finer one holds.
+    /// Is the fraction of a cascade's width, 0..=0.5, over which it blends into the next one toward its border. The
+    /// default is 0: a cascade ends where its map ends, and the edges of shadows become wider there at once. A value of
+    /// 0.1 hides that; two maps are sampled inside the blended border. Too large a value costs lookups and lets the
+    /// coarser map blur what the finer one resolves.
     pub blend: f32,
-    /// What may change the extent of a cascade.
+    /// Selects what may change the extent of a cascade. The default is [`Stability::TightFit`].
     pub stability: Stability,
-    /// How the maps store depths. `Unorm16` halves their memory; casters need pipelines for it
+    /// Selects how the maps store depths. The default is [`DepthFormat::Float32`]. `Unorm16` halves their memory; the
+    /// casters need pipelines for it
     /// ([`CasterPipelineDescriptor::depth_formats`](crate::caster::CasterPipelineDescriptor::depth_formats)).
     pub depth_format: DepthFormat,
 }
@@ -60,8 +68,8 @@ impl Default for DirectionalShadowDescriptor<'_> {
 }
 
 impl DirectionalShadowDescriptor<'_> {
-    /// One gather a lookup and a quarter of the default's texels: the cheapest that keeps edges smooth, with one and a half
-    /// times the default's error.
+    /// Describes the cheapest light whose shadow edges are smooth: one gather per lookup and a quarter of the default's
+    /// texels, with 1.5 times the default's error.
     pub const CHEAP: Self = Self {
         label: None,
         map_size: 1024,
@@ -74,8 +82,9 @@ impl DirectionalShadowDescriptor<'_> {
         depth_format: DepthFormat::Float32,
     };
 
-    /// Nine gathers a lookup and four times the default's texels, for seven tenths of the default's error. Measured, as are the
-    /// default and [`CHEAP`](Self::CHEAP), by `cargo bench --bench speed_vs_error`: none of the three is beaten at its cost.
+    /// Describes a more accurate light: nine gathers per lookup and four times the default's texels, with 0.7 times the
+    /// default's error. `cargo bench --bench speed_vs_error` measures this one, the default and [`CHEAP`](Self::CHEAP);
+    /// no measured configuration of the same cost has a smaller error than any of the three.
     pub const ACCURATE: Self = Self {
         map_size: 4096,
         filter: Filter::Tent5 { sharpness: 4.0 },
@@ -83,18 +92,21 @@ impl DirectionalShadowDescriptor<'_> {
     };
 }
 
-/// A light so far away that its rays are parallel.
+/// Describes a light that is so far away that its rays are parallel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectionalLight {
-    /// Direction in which the light shines (from the sun to the ground), any length but zero; world axes.
+    /// Is the direction in which the light shines (from the sun to the ground), in world axes, finite and of any length
+    /// but zero.
     pub direction: Vec3,
-    /// The world's up axis, any length but zero: the map's x axis is horizontal, so that level ground under a low sun
-    /// fills the map. Default +Y.
+    /// Is the world's up axis, finite and of any length but zero. It orients the map: the map's x axis is horizontal,
+    /// so that level ground under a low sun fills the map. Where the light's direction is within 26° of that axis, the
+    /// map follows the world's other axes instead. [`DirectionalLight::new`] sets +Y. A wrong axis costs resolution
+    /// under a low sun.
     pub up: Vec3,
 }
 
 impl DirectionalLight {
-    /// Light along `direction` in a world whose up axis is +Y.
+    /// Makes a light along `direction` in a world whose up axis is +Y.
     pub const fn new(direction: Vec3) -> Self {
         Self {
             direction,
@@ -102,7 +114,7 @@ impl DirectionalLight {
         }
     }
 
-    /// Returns the light's axes if its vectors have directions.
+    /// Returns the light's axes if its vectors are finite and not zero.
     fn axes(&self) -> Result<LightAxes, ShadowError> {
         let (direction, up) = (self.direction.as_dvec3(), self.up.as_dvec3());
         check::direction("DirectionalLight::direction", direction)?;
@@ -111,7 +123,8 @@ impl DirectionalLight {
     }
 }
 
-/// Shadows of a directional light: a depth texture with one layer per cascade, its uniforms, and what is needed to fill them.
+/// Renders the shadows of a directional light. Owns a depth texture with one layer per cascade, the uniforms of its
+/// views, and the state that decides what each frame must draw.
 #[derive(Debug)]
 pub struct DirectionalShadow {
     maps: ShadowMaps,
@@ -121,10 +134,11 @@ pub struct DirectionalShadow {
 }
 
 impl DirectionalShadow {
-    /// Makes texture and buffers. Until the first [`DirectionalShadow::record`], everything is lit.
+    /// Creates the light's texture and buffers. Until the first [`DirectionalShadow::record`], every surface is lit.
     ///
     /// # Errors
-    /// [`ShadowError`] for a descriptor out of range, or a device that cannot hold it.
+    /// Returns [`ShadowError`] for a descriptor with a value out of range, and for a device whose limits or memory do
+    /// not suffice or that is lost.
     pub fn new(
         device: &wgpu::Device,
         descriptor: &DirectionalShadowDescriptor<'_>,
@@ -147,7 +161,7 @@ impl DirectionalShadow {
         check_planar_filter("DirectionalShadowDescriptor::filter", descriptor.filter)?;
         check::in_range(
             "DirectionalShadowDescriptor::filter",
-            "of an angular diameter below π",
+            "a filter with an angular diameter of the light below π",
             descriptor.filter.light_size() < std::f32::consts::PI,
             descriptor.filter.light_size(),
         )?;
@@ -190,14 +204,17 @@ impl DirectionalShadow {
         })
     }
 
-    /// Fits the cascades to the frame, culls, writes the uniforms and records the depth passes that are needed.
+    /// Fits the cascades to the frame, culls the casters, writes the uniforms, and records the depth passes that are
+    /// needed.
     ///
-    /// The encoder must be submitted before anything that asks for these shadows, and encoders in the order in which they were
-    /// recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)).
+    /// The encoder must be submitted before any work that samples these shadows, and encoders must be submitted in the
+    /// order in which they were recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)).
     ///
     /// # Errors
-    /// [`ShadowError`] for input that is not finite or not a camera, light or box. Nothing is recorded then, and the last good
-    /// maps remain.
+    /// Returns [`ShadowError`] for a light whose vectors are not finite or are zero, for a camera without a finite far
+    /// end under [`Stability::BoundingSphere`], for a view that cannot be represented, for casters whose pipelines do
+    /// not fit the light, and for a device that is lost or out of memory. Nothing is recorded then, and the maps of the
+    /// last successful frame remain.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -228,7 +245,7 @@ impl DirectionalShadow {
         Ok(report)
     }
 
-    /// Checks that the slices of all cameras have an end, where the fit goes by the whole of them.
+    /// Checks that the slices of all cameras end at a finite depth where the fit covers the whole of them.
     fn check_distances(&self, frame: &ShadowFrame<'_>) -> Result<(), ShadowError> {
         let Region::Cameras(cameras) = frame.region else {
             return Ok(());
@@ -246,7 +263,7 @@ impl DirectionalShadow {
         Ok(())
     }
 
-    /// Returns the cascades that something casts into, with the casters of each.
+    /// Returns the views of the cascades into which something casts, with the casters of each.
     fn drawn_views(
         &mut self,
         fit: &DirectionalFit,
@@ -265,12 +282,13 @@ impl DirectionalShadow {
         }
         Ok(views)
     }
+
     /// Returns the light's depth texture, uniforms and report.
     pub fn maps(&self) -> &ShadowMaps {
         &self.maps
     }
 
-    /// Says that the maps no longer hold what was recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)): the
+    /// Declares the contents of the maps invalid ([what a kept map relies on](crate#what-a-kept-map-relies-on)): the
     /// next frame draws every view.
     pub fn invalidate(&mut self) {
         self.maps.invalidate();
