@@ -64,10 +64,10 @@
 //!
 //! Over a plane, ndc depth is affine in map coordinates, for orthographic and perspective views alike. With
 //! [`Bias::Auto`] the shader transforms the receiver's tangent plane to texel space, gathers raw depths, and compares
-//! each of them with the depth of the plane at that texel, clamped so that it never lies farther from the light than the
-//! receiver. Only rounding remains to be offset; [`Bias`] describes by how much. The normal must be the geometric one,
-//! of unit length, on the side that is shaded; `shadow_geometric_normal(position, toward_viewer)` computes it from
-//! screen-space derivatives.
+//! each of them with the depth of the plane at that texel, clamped so that it never lies farther from the light than
+//! the receiver. What remains is an offset for rounding, and one of a tenth of a texel; see [`Bias`]. The normal must
+//! be the geometric one, of unit length, on the side that is shaded; `shadow_geometric_normal(position, toward_viewer)`
+//! computes it from screen-space derivatives.
 //!
 //! `toward_viewer` selects the side. Derivatives alone cannot, since a projection that mirrors (a planar reflection, a
 //! target whose y points down, a captured cube map) reverses them. It is any vector from the surface to the side that

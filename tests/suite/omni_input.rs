@@ -67,7 +67,7 @@ fn radii_that_no_filter_has() {
             };
             let wanted = ShadowError::OutOfRange {
                 field: "OmniShadowDescriptor::filter",
-                rule: "of a finite radius above 0",
+                rule: "a filter with a finite radius above 0",
                 value: radius.to_string(),
             };
             let refused = OmniShadow::new(&gpu().device, &descriptor);
@@ -177,8 +177,8 @@ fn frames_that_are_refused_change_nothing() {
     }
 }
 
-/// Lights in odd places and of odd reach: refused with an error, or every answer is a visibility. On a vertex, on a surface,
-/// on an edge, inside a solid, next to nothing and next to infinity.
+/// Lights in odd places and of odd reach: refused with an error, or every answer is a visibility. On a vertex, on a
+/// surface, on an edge, inside a solid, next to nothing and next to infinity.
 #[test]
 fn odd_lights_get_visibilities() {
     let gpu = gpu();
@@ -291,8 +291,8 @@ fn lights_on_surfaces() {
             .any(|view| view.status == ViewStatus::Drawn)
     );
     let floor = |x, z| Point::new(Vec3::new(x, -1.0, z), Vec3::Y);
-    // On the side from which the light shines: lit. Behind the box: dark, for the box's side that faces it is the light's own
-    // and cannot cast, but its far side does.
+    // On the side from which the light shines: lit. Behind the box: dark, for the box's side that faces it is the
+    // light's own and cannot cast, but its far side does.
     let points = [floor(-2.0, 0.3), floor(0.2, -3.0), floor(4.0, 0.0)];
     assert_eq!(ask.points(gpu, &points), [1.0, 1.0, 0.0]);
 }
