@@ -52,8 +52,8 @@ pub struct ShadowViewUniform {
     pub manual_slope: f32,
     /// Is the edge sharpness of the filter; 1 leaves its ramp as it is.
     pub sharpness: f32,
-    /// Is the world distance from the anchor beyond which a local light does not reach; at most 1e18, which stands for
-    /// a directional light or an infinite range.
+    /// Is the world distance from the anchor beyond which a local light does not reach; at most 1e18, the
+    /// value for a directional light.
     pub range: f32,
     /// Is the cosine of the half-angle of the cone around the view's axis; -2 if there is no cone.
     pub cone_cosine: f32,
