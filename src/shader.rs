@@ -1,8 +1,8 @@
 //! Contains the WGSL as data: a table of plain modules without directives, what each of them requires, and their union.
 //!
 //! All names begin with `shadow_`, `Shadow` or `SHADOW_`, so the texts can be concatenated with those of any engine, in
-//! any order, and be loaded unchanged as WESL or naga_oil modules. The sampling functions take texture, sampler and view
-//! as arguments. No module in [`MODULES`] declares a binding, except the caster modules and those of whole passes.
+//! any order, and be loaded unchanged as WESL or naga_oil modules. The sampling functions take texture, sampler and
+//! view as arguments. No module in [`MODULES`] declares a binding, except the caster modules and those of whole passes.
 //!
 //! An engine with its own bind groups composes `["bias_plane", "filter_tent3"]` and calls
 //! `shadow_filter_tent3(map, map_sampler, shadow_receiver_plane(view, position, normal))`. On devices whose shaders

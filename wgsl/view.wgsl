@@ -83,8 +83,8 @@ fn shadow_view_holds(view: ShadowView, position: vec3<f32>) -> bool {
     // that of Debian 12). The driver looks for branches that depend on uniforms alone, and records each member of a
     // uniform buffer that it finds in a condition before the first value that varies. For the fourth and later buffers
     // of a stage it writes that record past the end of its table, and crashes. In the test of the cone it finds the
-    // position first, since it reads the right side of `a <= b` first. For the same reason the biases use `select`
-    // instead of branches.
+    // position first, as the left side of `>=`; in a test with `<=`, such as that of the range, it finds the right side
+    // first. For the same reason the biases use `select` instead of branches.
     let reached = -dot(relative, view.light.xyz) >= view.cone_cosine * sqrt(distance_squared)
         && distance_squared <= view.range * view.range;
     return reached && shadow_view_covers(view, position);

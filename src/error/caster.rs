@@ -4,8 +4,8 @@ use thiserror::Error;
 
 use crate::error::{DeviceError, DeviceRefusal};
 
-/// Tells why [`CasterPipeline::new`](crate::CasterPipeline::new), [`MeshCaster::new`](crate::MeshCaster::new) or a later
-/// change of a mesh failed.
+/// Tells why [`CasterPipeline::new`](crate::CasterPipeline::new), [`MeshCaster::new`](crate::MeshCaster::new) or a
+/// later change of a mesh failed.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum CasterError {

@@ -74,9 +74,9 @@ pub enum ShadowError {
     ///
     /// The other cause affects directional lights only: the view lies so far from the world origin that f64 does not
     /// distinguish its texels. That is so where four steps of f64 (`2⁻⁵⁰ coordinate_world`) exceed the texel size that
-    /// `extent_world` leads to, and also exceed what f32 resolves at `distance_world`. That texel size is `extent_world`
-    /// divided by the map's texels per side, or by 64 if the map has fewer. A map of 2048 texels over 100 units fails at
-    /// 5·10¹³ units from the world origin and beyond.
+    /// `extent_world` leads to, and also exceed what f32 resolves at `distance_world`. That texel size is
+    /// `extent_world` divided by the map's texels per side, or by 64 if the map has fewer. A map of 2048 texels over
+    /// 100 units fails at 5·10¹³ units from the world origin and beyond.
     #[error(
         "the fitted view must be representable in f32 and f64, got an extent of {extent_world} world units at {distance_world} from the render origin and {coordinate_world} from the world origin"
     )]
