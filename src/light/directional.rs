@@ -237,7 +237,7 @@ impl DirectionalShadow {
         let maps_frame = MapsFrame {
             views,
             layers: &layers[..self.limits.cascades],
-            viewer_render: None,
+            camera_render: None,
             casters: frame.casters,
         };
         let report = self.maps.record(encoder, maps_frame)?;

@@ -136,7 +136,7 @@ impl LocalLights {
         let maps_frame = MapsFrame {
             layers: &layers,
             views,
-            viewer_render: frame.viewer_render(),
+            camera_render: frame.camera_render(),
             casters: frame.casters,
         };
         let report = maps.record(encoder, maps_frame)?;

@@ -126,7 +126,7 @@ pub struct ShadowFrame<'a> {
 
 impl ShadowFrame<'_> {
     /// Returns the position of the first camera in render space, or `None` where the frame has no camera.
-    pub(crate) fn viewer_render(&self) -> Option<Vec3> {
+    pub(crate) fn camera_render(&self) -> Option<Vec3> {
         match self.region {
             Region::Cameras(cameras) => cameras.first().map(CameraFrustum::eye_render),
             Region::Bounds(_) | Region::Everything => None,

@@ -91,7 +91,7 @@ pub(crate) struct MapsFrame<'a> {
     /// Holds the views into which something casts, in the order of `layers`; the other layers are lit.
     pub views: Vec<ViewDraws>,
     /// Is the position of the first camera, if there is one.
-    pub viewer_render: Option<Vec3>,
+    pub camera_render: Option<Vec3>,
     pub casters: FrameCasters<'a>,
 }
 
@@ -235,14 +235,14 @@ impl ShadowMaps {
         let MapsFrame {
             layers,
             mut views,
-            viewer_render,
+            camera_render,
             casters,
         } = frame;
         let device = &self.device.clone();
         let prepared = self
             .recorder
             .prepare(device, &self.map, &mut views, &casters)?;
-        let uniform_values = self.uniforms_of(layers, &views, viewer_render);
+        let uniform_values = self.uniforms_of(layers, &views, camera_render);
         let upload = self
             .uniforms
             .prepare(device, bytemuck::cast_slice(&uniform_values))?;
@@ -275,7 +275,7 @@ impl ShadowMaps {
         &mut self,
         layers: &[LayerState],
         views: &[ViewDraws],
-        viewer_render: Option<Vec3>,
+        camera_render: Option<Vec3>,
     ) -> Vec<ShadowViewUniform> {
         let mut uniforms = std::mem::take(&mut self.memory.uniforms);
         uniforms.clear();
@@ -292,7 +292,7 @@ impl ShadowMaps {
         }
         for uniform in &mut uniforms {
             uniform.sample_radius = self.sampling.filter.radius_world();
-            uniform.viewer = viewer_render.map_or([0.0; 4], |viewer| viewer.extend(1.0).to_array());
+            uniform.viewer = camera_render.map_or([0.0; 4], |camera| camera.extend(1.0).to_array());
         }
         uniforms
     }
