@@ -1,4 +1,4 @@
-//! Bad and odd input of point lights: refused by field and value, or answered by a visibility.
+//! Tests bad and unusual input of point lights: it is refused with field and value, or every result is a visibility.
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
@@ -76,7 +76,7 @@ fn radii_that_no_filter_has() {
     }
 }
 
-/// Each bad frame is refused by name, and leaves the maps, the report and the answers of the last good one.
+/// Each bad frame is refused by name, and leaves the maps, the report and the visibilities of the last valid one.
 #[test]
 fn frames_that_are_refused_change_nothing() {
     let gpu = gpu();
@@ -171,14 +171,14 @@ fn frames_that_are_refused_change_nothing() {
             )
         );
         assert_eq!(ask.points(gpu, &points), [0.0, 1.0]);
-        // What was held is still held: the good frame again costs nothing.
+        // The maps are still known to be valid: the same valid frame again takes no pass.
         let again = record_omni(gpu, &mut shadow, &good).expect("a good frame");
         assert_eq!(again.passes, 0, "{error}");
     }
 }
 
-/// Lights in odd places and of odd reach: refused with an error, or every answer is a visibility. On a vertex, on a
-/// surface, on an edge, inside a solid, next to nothing and next to infinity.
+/// Lights at unusual positions and of unusual reach are refused with an error, or every result is a visibility. They
+/// are on a vertex, on a surface, on an edge, inside a solid, near zero and near infinity.
 #[test]
 fn odd_lights_get_visibilities() {
     let gpu = gpu();
