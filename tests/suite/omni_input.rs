@@ -192,7 +192,7 @@ fn odd_lights_get_visibilities() {
             Point::rounded(place, triangle.normal())
         })
         .collect();
-    // The corners themselves, so that a receiver lies exactly at the light.
+    // These are the corners themselves, so that a receiver lies exactly at the light.
     let corners = scene.triangles.iter().flat_map(|triangle| triangle.0);
     points.extend(corners.map(|corner| Point::rounded(corner, DVec3::Y)));
     let places = [
@@ -266,7 +266,7 @@ fn odd_lights_get_visibilities() {
     );
 }
 
-/// A light on the floor shines over it, and on a face of a box leaves the other sides of the box dark.
+/// A light on the floor shines over it, and one on a face of a box leaves the other sides of the box dark.
 #[test]
 fn lights_on_surfaces() {
     let gpu = gpu();
@@ -291,8 +291,8 @@ fn lights_on_surfaces() {
             .any(|view| view.status == ViewStatus::Drawn)
     );
     let floor = |x, z| Point::new(Vec3::new(x, -1.0, z), Vec3::Y);
-    // On the side from which the light shines: lit. Behind the box: dark, for the box's side that faces it is the
-    // light's own and cannot cast, but its far side does.
+    // On the side to which the light shines, receivers are lit. Behind the box they are dark: the face on which the
+    // light lies cannot cast, but the face opposite to it does.
     let points = [floor(-2.0, 0.3), floor(0.2, -3.0), floor(4.0, 0.0)];
     assert_eq!(ask.points(gpu, &points), [1.0, 1.0, 0.0]);
 }

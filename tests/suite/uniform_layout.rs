@@ -1,4 +1,4 @@
-//! The structs that Rust writes and WGSL reads, member by member.
+//! Compares the structs that Rust writes and WGSL reads, member by member.
 
 use std::collections::BTreeMap;
 use std::mem::offset_of;
@@ -7,10 +7,10 @@ use wgpu_shadows::{ShadowViewUniform, shader};
 
 use crate::support::wgsl;
 
-/// Offset and size of a member in bytes.
+/// Maps each member to its offset and size in bytes.
 type Layout = BTreeMap<String, (usize, usize)>;
 
-/// Members and span of a WGSL struct, as naga lays it out.
+/// Returns the members and the span of a WGSL struct, as naga lays it out.
 fn wgsl_layout(module: &str, name: &str) -> (Layout, usize) {
     let source = shader::compose(&[module]).expect("a module of the table");
     let parsed = wgsl::validate(&source).unwrap_or_else(|error| panic!("{error}"));
@@ -44,8 +44,8 @@ macro_rules! rust_layout {
     }};
 }
 
-/// Every member stands in the same place with the same size under the same name, and the whole is as long, so that arrays of
-/// it have one stride.
+/// Every member has the same offset and size under the same name, and the whole has the same size, so that arrays of it
+/// have one stride.
 #[test]
 fn shadow_view_is_one_layout() {
     let (wgsl, span) = wgsl_layout("view", "ShadowView");
@@ -79,6 +79,6 @@ fn shadow_view_is_one_layout() {
     assert_eq!(span, size_of::<ShadowViewUniform>());
     let bytes: usize = rust.values().map(|(_, size)| size).sum();
     assert_eq!(bytes, span, "padding would be uploaded uninitialised");
-    // A uniform array wants a stride that is a multiple of 16.
+    // A uniform array needs a stride that is a multiple of 16.
     assert_eq!(span % 16, 0);
 }
