@@ -113,7 +113,7 @@ fn no_border_is_a_step() {
 /// `14uN`, 1e-4 of a texel, a visibility changes by no more than six per texel, and no comparison is a tie on a floor
 /// under floating planks.
 #[test]
-fn the_mean_is_the_twins() {
+fn the_mean_is_that_of_the_reference() {
     let (shadow, probe) = sun(0.2);
     let layers: Vec<_> = (0..3)
         .map(|layer| readback::depth_layer(gpu(), shadow.maps().texture(), layer))

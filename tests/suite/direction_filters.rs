@@ -56,7 +56,7 @@ fn star() -> Vec<DVec3> {
     offsets
 }
 
-struct Twin {
+struct Reference {
     uniforms: Vec<ShadowViewUniform>,
     faces: Vec<Vec<f32>>,
     filter: Filter,
@@ -64,7 +64,7 @@ struct Twin {
     eye: Option<DVec3>,
 }
 
-impl Twin {
+impl Reference {
     /// Returns the faces on which a position may lie, as far as f32 resolves it: that of the largest component, and
     /// those of components nearly equal to it.
     fn faces(from_light: DVec3) -> impl Iterator<Item = usize> {
@@ -179,7 +179,7 @@ fn compare(filter: Filter, bias: Bias, with_camera: bool) {
     assert_eq!(report.passes, 6);
     // This is the camera's position as the uniform has it.
     let viewer = Vec3::from_slice(&shadow.maps().view_uniforms()[0].viewer[..3]).as_dvec3();
-    let twin = Twin {
+    let reference = Reference {
         uniforms: shadow.maps().view_uniforms().to_vec(),
         faces: (0..6)
             .map(|layer| readback::depth_layer(gpu, shadow.maps().texture(), layer))
@@ -202,7 +202,7 @@ fn compare(filter: Filter, bias: Bias, with_camera: bool) {
     let (mut undecided, mut partial) = (0, 0);
     for (point, seen) in points.iter().zip(ask.points(gpu, &points)) {
         let wide = |v| Vec3::from_array(v).as_dvec3();
-        let (low, high) = twin.range(wide(point.position), wide(point.normal));
+        let (low, high) = reference.range(wide(point.position), wide(point.normal));
         // Whole numbers up to 64 are exact; one division remains.
         let seen = f64::from(seen);
         let context = format!("{filter:?} {bias:?} {point:?}: {seen} outside {low}..{high}");

@@ -251,7 +251,7 @@ impl Tally {
 }
 
 #[test]
-fn visibilities_are_the_twins() {
+fn visibilities_are_those_of_the_reference() {
     let gpu = gpu();
     let scene = scene();
     let mut failures = Vec::new();

@@ -78,8 +78,8 @@ fn texel_error(placed: &Placed, place: DVec3) -> f64 {
     let position = placed.render(place).as_vec3().as_dvec3();
     layer_at(placed, place).map_or(0.0, |layer| {
         let view = placed.shadow.maps().view_uniforms()[layer];
-        let twin = receiver(&view, FILTER, Bias::Auto, position, DVec3::Y);
-        let band = band(&view, FILTER, Bias::Auto, position, DVec3::Y, &twin);
+        let reference = receiver(&view, FILTER, Bias::Auto, position, DVec3::Y);
+        let band = band(&view, FILTER, Bias::Auto, position, DVec3::Y, &reference);
         let rounding = band.expect("a floor that is not edge on").texel;
         let size = placed.report.views[layer].texel_size_world.min_element();
         rounding.element_sum() + std::f64::consts::SQRT_2 * f64::from(view.offset_world / size)

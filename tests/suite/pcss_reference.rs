@@ -9,7 +9,7 @@ use super::penumbra::{Profile, STEPS, beyond_chord};
 /// The CPU reference agrees with the closed form as well, so that a wrong device cannot be hidden by a wrong reference:
 /// over an ideal map, with either pattern.
 #[test]
-fn the_twin_spreads_as_the_closed_form() {
+fn the_reference_spreads_as_the_closed_form() {
     const SIZE: u32 = 128;
     let depths: Vec<f32> = (0..SIZE * SIZE)
         .map(|texel| if texel % SIZE < SIZE / 2 { 0.875 } else { 0.5 })

@@ -33,7 +33,7 @@ const SAMPLE_ERROR_TEXELS: f64 = 32.0 / 2048.0;
 /// texel's border, which changes the mean height of the occluders, and with it the radius, by a fraction of itself; one
 /// in a hundred results may be off by that.
 #[test]
-fn penumbrae_are_the_twins() {
+fn penumbrae_are_those_of_the_reference() {
     let gpu = gpu();
     let scene = scene();
     let sizes = [0.01, 0.2, 0.8];
@@ -62,7 +62,7 @@ fn penumbrae_are_the_twins() {
             }
             let texel = band.texel + SAMPLE_ERROR_TEXELS;
             let depth = band.reference_depth(filter, &receiver);
-            let twins = (0..9).map(|corner| {
+            let references = (0..9).map(|corner| {
                 let sign = |bit: u32| f64::from(corner >> bit & 1) * 2.0 - 1.0;
                 let (aside, toward) = match corner {
                     8 => (DVec2::ZERO, 0.0),
@@ -75,7 +75,7 @@ fn penumbrae_are_the_twins() {
                 };
                 reference::visibility(filter, &map, &moved)
             });
-            let (low, high) = twins.fold((1.0_f64, 0.0_f64), |(low, high), seen| {
+            let (low, high) = references.fold((1.0_f64, 0.0_f64), |(low, high), seen| {
                 (low.min(seen), high.max(seen))
             });
             // The tolerance covers sums of 128 products, and the tent's sharpness of three.

@@ -60,7 +60,7 @@ fn view_group(gpu: &Gpu, buffer: &wgpu::Buffer) -> (wgpu::BindGroupLayout, wgpu:
 }
 
 #[test]
-fn receivers_are_the_twins() {
+fn receivers_are_those_of_the_reference() {
     let gpu = gpu();
     let scene = scene();
     // Reaches and map sizes differ, and with them light-space bounds, borders and gradients.
@@ -83,24 +83,28 @@ fn receivers_are_the_twins() {
             let (mut edge_on, mut outside) = (0, 0);
             for (point, answer) in points.iter().zip(answers) {
                 let (position, normal) = place(point);
-                let twin = reference::receiver(&lit.view, filter, bias, position, normal);
-                let Some(band) = band(&lit.view, filter, bias, position, normal, &twin) else {
+                let reference = reference::receiver(&lit.view, filter, bias, position, normal);
+                let Some(band) = band(&lit.view, filter, bias, position, normal, &reference) else {
                     edge_on += 1;
                     continue;
                 };
                 let [x, y, depth, inside, gradient_x, gradient_y, ..] = answer.map(f64::from);
-                let texel_error = (DVec2::new(x, y) - twin.texel).abs();
-                let gradient_error = (DVec2::new(gradient_x, gradient_y) - twin.gradient).abs();
-                let depth_error = (depth - twin.depth).abs();
+                let texel_error = (DVec2::new(x, y) - reference.texel).abs();
+                let gradient_error =
+                    (DVec2::new(gradient_x, gradient_y) - reference.gradient).abs();
+                let depth_error = (depth - reference.depth).abs();
                 used.0 = used.0.max((texel_error / band.texel).max_element());
                 used.1 = used.1.max(depth_error / band.depth);
                 let context =
-                    format!("{filter:?} {bias:?} {point:?}\n{answer:?}\n{twin:?}\n{band:?}");
+                    format!("{filter:?} {bias:?} {point:?}\n{answer:?}\n{reference:?}\n{band:?}");
                 assert!(texel_error.cmple(band.texel).all(), "{context}");
                 assert!(depth_error <= band.depth, "{context}");
                 assert!(gradient_error.cmple(band.gradient).all(), "{context}");
                 let undecided = at_border(&lit.view, position, &band);
-                assert!(undecided || (inside == 1.0) == twin.inside, "{context}");
+                assert!(
+                    undecided || (inside == 1.0) == reference.inside,
+                    "{context}"
+                );
                 outside += usize::from(inside == 0.0);
             }
             // A band that no error comes near would hide mistakes as large as itself.

@@ -44,19 +44,19 @@ fn any_numbers_in_the_reference_get_a_visibility() {
             grid: view.grid,
             inside: true,
         };
-        let twin = receiver(&view, filter, bias, position, normal);
-        let twin_inside = Receiver {
+        let reference = receiver(&view, filter, bias, position, normal);
+        let reference_inside = Receiver {
             inside: true,
-            ..twin
+            ..reference
         };
-        for receiver in [twin, twin_inside, any] {
+        for receiver in [reference, reference_inside, any] {
             let seen = visibility(filter, &map, &receiver);
             let sound = (0.0..=1.0).contains(&seen);
             prop_assert!(sound, "{} of {:?} {:?}", seen, filter, receiver);
             answers.set(answers.get() + 1);
             inside.set(inside.get() + usize::from(seen < 1.0));
         }
-        prop_assert!(twin.inside == holds(&view, position));
+        prop_assert!(reference.inside == holds(&view, position));
         let weight = weight(&view, position);
         prop_assert!((0.0..=1.0).contains(&weight), "{}", weight);
         Ok(())
