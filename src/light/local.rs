@@ -218,7 +218,7 @@ impl LocalLights {
     }
 
     /// Selects the lights to refresh within a budget of `max_views` depth passes. Lights that need a refresh are taken
-    /// in descending order of urgency, which is the importance times one more than the number of frames waited, so that
+    /// in descending order of urgency, which is the importance times (1 + the number of frames waited), so that
     /// no light of importance above 0 waits for ever. The first is always refreshed, however small the budget; each
     /// further one is refreshed if its passes fit into the rest.
     ///
