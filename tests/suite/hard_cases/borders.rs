@@ -1,4 +1,5 @@
-//! Receivers beyond every cascade, behind the camera and far away from everything: lit, and no other light's layer is read.
+//! Tests receivers beyond every cascade, behind the camera and far away from everything: they are lit, and no other
+//! light's layer is read.
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::reference::receiver;
@@ -18,8 +19,8 @@ use crate::support::probe::Point;
 use crate::support::random::Random;
 use crate::support::scene::Mesh;
 
-/// Under a roof without end all that any cascade holds is dark, and all else is lit, to both sides of every border; the view
-/// function names no layer that is not there.
+/// Under an unbounded roof everything that a cascade covers is dark, and everything else is lit, on both sides of every
+/// border; the view function returns no layer that does not exist.
 #[test]
 fn receivers_beyond_every_cascade_are_lit() {
     let roof = scene(&[Mesh::cuboid(
@@ -125,8 +126,8 @@ fn receivers_beyond_every_cascade_are_lit() {
     );
 }
 
-/// Layers of a pool lie side by side in one texture: beside a light that is all dark, a light whose map is empty is lit up to
-/// the border of its map, and beyond.
+/// Layers of a pool lie side by side in one texture: beside a light that is completely dark, a light whose map is empty
+/// is lit up to the border of its map, and beyond.
 #[test]
 fn no_light_of_a_pool_reads_its_neighbours() {
     let gpu = gpu();
@@ -144,7 +145,8 @@ fn no_light_of_a_pool_reads_its_neighbours() {
         .iter()
         .map(|place| Mesh::cuboid(place.as_vec3() - 1.0, place.as_vec3() + 1.0))
         .collect();
-    // Something casts in every view of the middle light, too, so that its layers are drawn: small plates on all sides.
+    // Something casts in every view of the middle light as well, so that its layers are drawn: small plates on all
+    // sides.
     let plates = [
         Vec3::X,
         Vec3::NEG_X,
