@@ -105,9 +105,8 @@ impl PartScratch {
             rest[index].union(&self.large[index].light);
         }
         let mut parts_box = LightBox::EMPTY;
-        for index in 0..limit {
-            let large = self.large[index];
-            let mut all = rest[index];
+        for (large, remaining) in self.large.iter().zip(&rest[..limit]) {
+            let mut all = *remaining;
             all.union(&parts_box);
             if large.side < LARGE_SHARE * all.widest_side() {
                 break;
