@@ -32,10 +32,10 @@ fn shadow_direction_star(index: u32) -> vec3<f32> {
 }
 
 // Returns the radius of the star in world units. It is `sample_radius` at the camera, and grows with the distance from
-// the camera in relation to the light's range, as in the tutorial. `viewer.w` is 0 where the frame has no camera.
+// the camera in relation to the light's range, as in the tutorial. `camera.w` is 0 where the frame has no camera.
 fn shadow_direction_star_radius(view: ShadowViewUniform, position: vec3<f32>) -> f32 {
-    let far = distance(position, view.viewer.xyz) / view.range;
-    return view.sample_radius * (1.0 + view.viewer.w * far);
+    let far = distance(position, view.camera.xyz) / view.range;
+    return view.sample_radius * (1.0 + view.camera.w * far);
 }
 
 // Returns the radius of the grid in world units, which is the same everywhere.

@@ -45,7 +45,7 @@ struct ShadowViewUniform {
     // Is the radius in world units of the direction-space filters.
     sample_radius: f32,
     // Is the position of the first camera in render space. w is 1, or 0 where the frame has no camera.
-    viewer: vec4<f32>,
+    camera: vec4<f32>,
     // Is the radius of a penumbra in texels along x and y, per difference of ndc depth.
     penumbra: vec2<f32>,
     // Is the distance from the border, in texels, within which a cascade blends into the next one.

@@ -300,7 +300,7 @@ impl ShadowMaps {
         }
         for uniform in &mut uniforms {
             uniform.sample_radius = self.sampling.filter.radius_world();
-            uniform.viewer = camera_render.map_or([0.0; 4], |camera| camera.extend(1.0).to_array());
+            uniform.camera = camera_render.map_or([0.0; 4], |camera| camera.extend(1.0).to_array());
         }
         uniforms
     }

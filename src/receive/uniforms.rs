@@ -67,7 +67,7 @@ pub struct ShadowViewUniform {
     /// Is the radius in world units of the direction-space filters; 0 for the other filters.
     pub(crate) sample_radius: f32,
     /// Is the position of the first camera in render space. w is 1, or 0 where the frame has no camera.
-    pub(crate) viewer: [f32; 4],
+    pub(crate) camera: [f32; 4],
     /// Is the radius of a penumbra in texels along x and y, per difference of ndc depth between occluder and receiver;
     /// 0 for filters without a light size.
     pub(crate) penumbra: [f32; 2],
@@ -191,7 +191,7 @@ pub(crate) fn view_uniform(view: &ShadowView, sampling: &Sampling) -> ShadowView
         range: endless_range(view.reach_world()),
         cone_cosine: view.cone_cosine() as f32,
         sample_radius: sampling.filter.radius_world(),
-        viewer: [0.0; 4],
+        camera: [0.0; 4],
         penumbra: view
             .penumbra_texels(f64::from(sampling.filter.light_size()))
             .as_vec2()
@@ -225,7 +225,7 @@ mod tests {
         let in_rust = members!(
             texel_from_anchor plane_across plane_down plane_depth light anchor layer inner map_size depth_error
             depth_error_relative lateral_error offset_texels offset_world manual_constant manual_slope sharpness range
-            cone_cosine sample_radius viewer penumbra fade_texels grid
+            cone_cosine sample_radius camera penumbra fade_texels grid
         );
         let source = shader::compose(&["view"]).expect("a module of the table");
         let module = naga::front::wgsl::parse_str(&source).expect("valid WGSL");

@@ -179,7 +179,7 @@ fn compare(filter: Filter, bias: Bias, with_camera: bool) {
     let report = record_omni(gpu, &mut shadow, &frame).expect("a valid frame");
     assert_eq!(report.passes, 6);
     // This is the camera's position as the uniform has it.
-    let camera: [f32; 4] = member(&shadow.maps().view_uniforms()[0], "viewer");
+    let camera: [f32; 4] = member(&shadow.maps().view_uniforms()[0], "camera");
     let camera = Vec3::from_slice(&camera[..3]).as_dvec3();
     let reference = Reference {
         uniforms: shadow.maps().view_uniforms().to_vec(),
@@ -229,7 +229,7 @@ fn the_star_is_the_mean_of_20() {
 }
 
 #[test]
-fn the_star_widens_away_from_the_viewer() {
+fn the_star_widens_away_from_the_camera() {
     compare(Filter::DirectionStar { radius: 0.06 }, Bias::Auto, true);
 }
 
