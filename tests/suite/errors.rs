@@ -52,8 +52,13 @@ fn descriptors_out_of_range() {
             bias_rule,
             "constant 0, slope NaN",
         ),
-        (split(1.5), "split", "of a lambda in 0..=1", "1.5"),
-        (split(f32::NAN), "split", "of a lambda in 0..=1", "NaN"),
+        (split(1.5), "split", "a split with a lambda in 0..=1", "1.5"),
+        (
+            split(f32::NAN),
+            "split",
+            "a split with a lambda in 0..=1",
+            "NaN",
+        ),
     ];
     assert_eq!(sun(gpu(), &good), Ok(()));
     for (descriptor, field, rule, value) in cases {
