@@ -1,10 +1,11 @@
-//! How the cost of shadows grows: with casters, lights, cascades, map size, taps and motion; and beside the bare minimum.
+//! Measures how the cost of shadows grows with casters, lights, cascades, map size, taps and motion, and compares it
+//! with the bare minimum.
 //!
-//! `cargo bench --bench cost`. CPU times are those of `ShadowScene::frame` and `record` together, with the allocations made;
-//! device times are ratios, run by run, so that they mean the same on every machine. Each table ends with the exponents of its
-//! growth.
+//! Run it with `cargo bench --bench cost`. CPU times are those of `ShadowScene::frame` and `record` together, with the
+//! allocations made; device times are ratios, run by run, so that they mean the same on every machine. Each table ends
+//! with the exponents of its growth.
 //!
-//! What it is made of: `growth/mod.rs`.
+//! `growth/mod.rs` lists its parts.
 
 use std::process::ExitCode;
 
@@ -18,19 +19,19 @@ use support::gpu::Gpu;
 mod growth;
 mod support;
 
-/// How the cost of shadows grows.
+/// Measures how the cost of shadows grows.
 #[derive(Parser)]
 struct Arguments {
-    /// Repetitions of each measurement, of which the median counts.
+    /// Sets the number of repetitions of each measurement, of which the median is reported.
     #[arg(long, default_value_t = 30)]
     repeats: u32,
-    /// Most casters.
+    /// Sets the largest number of casters.
     #[arg(long, default_value_t = 100_000)]
     casters: u32,
-    /// Largest map, texels per side.
+    /// Sets the texels per side of the largest map.
     #[arg(long, default_value_t = 8192)]
     map_size: u32,
-    /// Passed by `cargo bench`.
+    /// Is passed by `cargo bench`.
     #[arg(long, hide = true)]
     bench: bool,
 }
@@ -60,7 +61,7 @@ fn main() -> ExitCode {
     device::map_sizes(&stage, arguments.map_size);
     device::taps(&stage);
     motion::moving_share(&stage);
-    motion::still_part(&stage);
+    motion::static_cache(&stage);
     device::bare_minimum(&stage);
     faces::in_one_pass(&stage);
     ExitCode::SUCCESS

@@ -1,13 +1,14 @@
-//! Cost against error, beside the shadow mapping of the textbook in the same run.
+//! Measures cost against error, and compares it with the shadow mapping of the tutorial at learnopengl.com (here called
+//! the textbook) in the same run.
 //!
-//! `cargo bench --bench speed_vs_error` measures every filter, bias, map size and coverage over all scenes;
-//! `cargo bench --bench speed_vs_error -- --quick` a subset. Tables go to standard output, every number as CSV and one chart and one
-//! picture per scene to `target/speed_vs_error`. Errors are those against rays cast in double precision through the pixels of a camera.
-//! Times are multiples of the textbook's, measured right before: on a software rasteriser nothing else means anything.
-//! The run fails where the library's default, or another of the configurations it recommends, is not on the Pareto front of work
-//! per frame against rmse.
+//! `cargo bench --bench speed_vs_error` measures every filter, bias, map size and coverage over all scenes; `cargo
+//! bench --bench speed_vs_error -- --quick` measures a subset. Tables go to standard output; every number as CSV, and
+//! one chart and one image per scene, go to `target/speed_vs_error`. Errors are those against rays cast in double
+//! precision through the pixels of a camera. Times are multiples of the textbook's, measured right before: on a
+//! software rasterizer no other time is meaningful. The run fails where the library's default, or another of the
+//! configurations it recommends, is not on the Pareto front of work per frame against rmse.
 //!
-//! What it is made of: `support/mod.rs`.
+//! `support/mod.rs` lists its parts.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -29,35 +30,36 @@ use support::{closed_form, parallel, report, scenes};
 
 mod support;
 
-/// Timed runs of every configuration.
+/// Is the number of timed runs of every configuration.
 const REPEATS: u32 = 2;
 
-/// Cost of shadows against their error, beside the textbook's.
+/// Measures the cost of shadows against their error, and compares both with the textbook's.
 #[derive(Parser)]
 struct Arguments {
-    /// Fewer configurations, pixels and repetitions: two minutes instead of ten to fifteen on a software rasteriser.
+    /// Measures fewer configurations, pixels and repetitions: two minutes instead of ten to fifteen on a software
+    /// rasterizer.
     #[arg(long)]
     quick: bool,
-    /// Only these scenes (all others are left out of the means, too).
+    /// Measures only these scenes. (All others are left out of the means as well.)
     #[arg(long = "scene", value_name = "NAME")]
     scenes: Vec<String>,
-    /// Texels per side of a sun's map; spots and faces of point lights have half of that.
+    /// Sets the texels per side of a sun's map; spot lights and faces of point lights have half of that.
     #[arg(long, value_delimiter = ',', default_values_t = [512, 1024, 2048, 4096])]
     map_sizes: Vec<u32>,
-    /// Timed runs, each next to one of the textbook's, of what is on a scene's front, of the library's presets and of the textbook;
-    /// of everything else there are 2. Default 30; 2 with --quick.
+    /// Sets the number of timed runs, each next to one of the textbook's, of what is on a scene's front, of the
+    /// library's presets and of the textbook; everything else has 2. The default is 30, or 2 with --quick.
     #[arg(long)]
     repeats: Option<u32>,
-    /// Width of the pictures in pixels, 16:9. Default 480; 256 with --quick.
+    /// Sets the width of the images in pixels, 16:9. The default is 480, or 256 with --quick.
     #[arg(long)]
     width: Option<u32>,
-    /// Print every configuration of every scene, not only the front, the default and the textbook.
+    /// Prints every configuration of every scene, not only the front, the default and the textbook.
     #[arg(long)]
     all_rows: bool,
-    /// Folder for tables and charts.
+    /// Sets the folder for tables and charts.
     #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/target/speed_vs_error"))]
     output: PathBuf,
-    /// Passed by `cargo bench`.
+    /// Is passed by `cargo bench`.
     #[arg(long, hide = true)]
     bench: bool,
 }
@@ -128,7 +130,7 @@ fn run(arguments: &Arguments) -> Result<Result<String, String>, Box<dyn Error>> 
     Ok(judgement)
 }
 
-/// Are all that the library recommends on the overall front?
+/// Returns whether every configuration that the library recommends is on the overall front.
 fn judge_presets(entries: &[Overall]) -> Result<String, String> {
     let judgements = Configuration::presets().map(|(name, preset)| {
         let with_name = |sentence| format!("{name}: {sentence}");
@@ -140,7 +142,7 @@ fn judge_presets(entries: &[Overall]) -> Result<String, String> {
     Ok(sentences?.join("\n      "))
 }
 
-/// Everything about one scene: errors and counts of all configurations, and the times of those that matter.
+/// Measures everything about one scene: errors and counts of all configurations, and the times of those that matter.
 fn measure_scene(
     prober: &mut Prober<'_>,
     scene: &Scene,
@@ -273,7 +275,7 @@ fn charts_of_all(arguments: &Arguments, entries: &[Overall]) -> Result<(), Box<d
     chart::draw(&arguments.output.join("overall_time.svg"), &words, &points)
 }
 
-/// What is looked at whether it is on a front or not.
+/// Returns whether a configuration is timed whether it is on a front or not.
 fn is_named(configuration: &Configuration) -> bool {
     configuration.preset_name().is_some() || *configuration == Configuration::BASELINE
 }

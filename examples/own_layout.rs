@@ -1,8 +1,8 @@
-//! An engine with its own bind groups: maps, uniform buffers and one sampler under its own names, and of the library only the
-//! WGSL modules, called with these as arguments.
+//! Shows an engine with its own bind groups: maps, uniform buffers and one sampler under its own names, and of the
+//! library only the WGSL modules, called with these as arguments.
 //!
-//! `cargo run --example own_layout` draws a floor, a box and a ball under a sun and a lamp into `target/own_layout.png`. What
-//! to look at is [`layout`], [`run`] and `own_layout.wgsl`; the rest is the scene.
+//! `cargo run --example own_layout` draws a floor, a box and a ball under a sun and a point light into
+//! `target/own_layout.png`. The parts to read are [`layout`], [`run`] and `own_layout.wgsl`; the rest is the scene.
 
 #[path = "common/mod.rs"]
 mod common;
@@ -26,10 +26,10 @@ use common::mesh::{Instance, Object, Vertex, cube, sphere, square};
 use common::phong::{Batch, Lighting, Phong, PhongDescriptor, Picture};
 use common::{arguments, picture};
 
-/// Draws a scene whose shadows lie in the engine's own bind group.
+/// Draws a scene whose shadows are in the engine's own bind group.
 #[derive(Parser)]
 struct Arguments {
-    /// The picture.
+    /// Names the file for the image.
     #[arg(default_value = "target/own_layout.png")]
     file: PathBuf,
 }
@@ -37,13 +37,13 @@ struct Arguments {
 const SIZE: [u32; 2] = [960, 540];
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 const TOWARD_SUN: Vec3 = Vec3::new(0.5, 0.8, 0.45);
-/// As in [`FRAGMENT`].
+/// Is the point light, as in [`FRAGMENT`].
 const LAMP: OmniLight = OmniLight {
     position_world: DVec3::new(-1.2, 1.6, 1.4),
     range: 9.0,
 };
 
-/// `shade` is Blinn-Phong under the sun; the lamp comes on top.
+/// Adds the point light to `shade`, which is Blinn-Phong under the sun.
 const FRAGMENT: &str = "
 @fragment
 fn fragment(surface: Surface) -> @location(0) vec4<f32> {
@@ -65,7 +65,7 @@ fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
     let mut sun = DirectionalShadow::new(&gpu.device, &Default::default())?;
     let mut lamp = OmniShadow::new(&gpu.device, &Default::default())?;
 
-    // The library's WGSL, the engine's bindings and functions behind it, and a group that holds what they name.
+    // This creates the library's WGSL, the engine's bindings and functions behind it, and a group with what they name.
     let modules = shader::compose(&["bias_plane", "filter_tent3", "cube_face", "normal"])?;
     let layout = layout(&gpu.device);
     let sampler = gpu.device.create_sampler(&Default::default());
@@ -98,7 +98,7 @@ fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
         },
     );
 
-    // Depth passes are recorded as ever, with one frame for both lights.
+    // Depth passes are recorded as usual, with one frame for both lights.
     let objects = objects(&gpu.device);
     let casters = casters(&gpu.device, &objects)?;
     let casters: Vec<&dyn ShadowCaster> = casters.iter().map(|caster| caster as _).collect();
@@ -143,7 +143,8 @@ fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The engine's own bind group: a sampler, then map and uniforms of the sun, then those of the lamp.
+/// Creates the layout of the engine's own bind group: a sampler, then map and uniforms of the sun, then those of the
+/// point light.
 fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     let texture = wgpu::BindingType::Texture {
         sample_type: wgpu::TextureSampleType::Depth,

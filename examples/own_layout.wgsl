@@ -1,4 +1,4 @@
-// The engine's own bindings and names; the library's modules stand in front of this text and take them as arguments.
+// Contains the engine's own bindings and names. The library's modules precede this text and take them as arguments.
 
 @group(1) @binding(0) var depth_sampler: sampler;
 @group(1) @binding(1) var sun_depths: texture_depth_2d_array;

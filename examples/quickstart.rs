@@ -1,7 +1,8 @@
-//! Three cubes, a floor and a sun: all that an engine does for its shadows, and a small engine to do it in.
+//! Draws three cubes, a floor and a sun: everything that an engine does for its shadows, and a small engine to do it
+//! in.
 //!
-//! `cargo run --example quickstart [PICTURE.png]` draws `target/quickstart.png`, or the picture named. What to copy is the
-//! function `draw` and the call of `shadow_sun` in the shader; what follows `draw` stands for the engine that you have.
+//! `cargo run --example quickstart [PICTURE.png]` draws `target/quickstart.png`, or the file named. The parts to copy
+//! are the function `draw` and the call of `shadow_sun` in the shader; what follows `draw` stands for your own engine.
 
 use std::{error::Error, path::Path, process::ExitCode};
 
@@ -15,7 +16,7 @@ use wgpu_shadows::{
     caster::MeshCasterDescriptor, caster::MeshIndices,
 };
 
-/// The engine's own shader. The library's WGSL goes in front of it and brings the two functions that begin with `shadow_`.
+/// Is the engine's own shader. The library's WGSL precedes it and defines the two functions that begin with `shadow_`.
 const SCENE_WGSL: &str = "
 struct Frame { clip_from_render: mat4x4<f32>, eye: vec4<f32>, toward_light: vec4<f32> }
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -31,8 +32,8 @@ struct Surface {
     @location(1) x: vec4<f32>, @location(2) y: vec4<f32>, @location(3) z: vec4<f32>, @location(4) w: vec4<f32>,
 ) -> Surface {
     var colors = array(vec3(0.5), vec3(0.8, 0.3, 0.2), vec3(0.3, 0.6, 0.3), vec3(0.2, 0.4, 0.8));
-    let place = mat4x4(x, y, z, w) * vec4(position, 1.0);
-    return Surface(frame.clip_from_render * place, place.xyz, colors[instance]);
+    let position_render = mat4x4(x, y, z, w) * vec4(position, 1.0);
+    return Surface(frame.clip_from_render * position_render, position_render.xyz, colors[instance]);
 }
 
 @fragment fn fragment(surface: Surface) -> @location(0) vec4<f32> {
@@ -66,8 +67,8 @@ fn draw(engine: &Engine, path: &Path) -> Result<(), Box<dyn Error>> {
     let unit_cube = Aabb::new(Vec3::NEG_ONE, Vec3::ONE);
     let [floor, cubes @ ..] = &engine.render_from_cube;
 
-    // At load time: what casts, the light, and the bind group and WGSL through which shaders ask for it. The scene is kept
-    // too, for all lights and all frames.
+    // At load time: create the casters, the light, and the bind group and WGSL by which shaders sample it. The scene is
+    // reused as well, for all lights and all frames.
     let pipeline = CasterPipeline::new(device, &CasterPipelineDescriptor::default())?;
     let caster = |render_from_model: &Mat4| {
         MeshCaster::new(
@@ -93,7 +94,7 @@ fn draw(engine: &Engine, path: &Path) -> Result<(), Box<dyn Error>> {
         },
     )?;
 
-    // Every frame: where the camera is, what casts, and what only receives; then each light.
+    // In every frame: state where the camera is, what casts, and what only receives; then record each light.
     let casters: Vec<&dyn ShadowCaster> = cubes.iter().map(|cube| cube as _).collect();
     let camera = CameraView::new(engine.view_from_render, engine.clip_from_view);
     let frame = scene.frame(&ShadowFrameDescriptor {
@@ -110,7 +111,7 @@ fn draw(engine: &Engine, path: &Path) -> Result<(), Box<dyn Error>> {
     engine.paint(encoder, &bindings, path)
 }
 
-// From here on there is nothing of shadows but `bindings.wgsl()`, `bindings.layout()` and `bindings.bind_group()`.
+// From here on nothing concerns shadows but `bindings.wgsl()`, `bindings.layout()` and `bindings.bind_group()`.
 
 const SIZE: wgpu::Extent3d = wgpu::Extent3d {
     width: 960,
@@ -120,7 +121,7 @@ const SIZE: wgpu::Extent3d = wgpu::Extent3d {
 const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// A graphics device, and a scene of one mesh that is drawn four times: a floor and three cubes.
+/// Holds a graphics device, and a scene of one mesh that is drawn four times: a floor and three cubes.
 struct Engine {
     device: wgpu::Device,
     queue: wgpu::Queue,
@@ -298,7 +299,7 @@ impl Engine {
         })
     }
 
-    /// Submits, waits and writes the picture.
+    /// Submits, waits and writes the image.
     fn save(
         &self,
         mut encoder: wgpu::CommandEncoder,
@@ -312,7 +313,7 @@ impl Engine {
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
-        // A copy wants rows of a multiple of 256 bytes, which those of 960 pixels are.
+        // A copy needs rows of a multiple of 256 bytes, which those of 960 pixels are.
         let rows = wgpu::TexelCopyBufferInfo {
             buffer: &pixels,
             layout: wgpu::TexelCopyBufferLayout {
@@ -353,7 +354,7 @@ fn buffer<T: bytemuck::NoUninit>(
     })
 }
 
-/// Two triangles for each side of the cube from -1 to 1, counter-clockwise as seen from outside.
+/// Returns two triangles for each side of the cube from -1 to 1, counter-clockwise as seen from outside.
 fn cube_corners() -> Vec<Vec3> {
     let sides = [
         Vec3::X,

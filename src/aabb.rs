@@ -1,47 +1,50 @@
-//! Axis-aligned boxes in render space.
+//! Defines axis-aligned boxes in render space.
 
 use glam::{DVec3, Mat4, Vec3};
 
-/// An axis-aligned bounding box in render space (f32, the engine's unit).
+/// Holds an axis-aligned bounding box in render space (f32, in the engine's unit).
 ///
-/// A box with `min > max` on any axis is *empty*: it bounds nothing, and fitting and culling pass it over. A box that is too
-/// small makes shadows vanish where the geometry leaves it; a box that is too large only costs resolution and draws.
+/// A box with `min > max` on any axis is *empty*: it contains nothing, and fitting and culling ignore it. A box with a
+/// NaN is *broken*. A caster or receiver whose box has a NaN or, without being empty, an infinite corner is left out of
+/// the frame and named by [`ShadowFrame::broken_bounds`](crate::ShadowFrame::broken_bounds). Where a box is too small,
+/// shadows of the geometry outside it are missing; a box that is too large only costs resolution and draws.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
-    /// Least corner, render space.
+    /// Is the least corner, in render space.
     pub min: Vec3,
-    /// Greatest corner, render space.
+    /// Is the greatest corner, in render space.
     pub max: Vec3,
 }
 
 impl Aabb {
-    /// The box that bounds nothing; the neutral element of [`Aabb::union`].
+    /// Contains nothing, and is the neutral element of [`Aabb::union`].
     pub const EMPTY: Self = Self {
         min: Vec3::INFINITY,
         max: Vec3::NEG_INFINITY,
     };
 
-    /// A box from its two corners. Corners in the wrong order give an empty box.
+    /// Makes a box from its two corners. Corners in the wrong order give an empty box.
     pub const fn new(min: Vec3, max: Vec3) -> Self {
         Self { min, max }
     }
 
-    /// What no geometry can mend: every box that a NaN went into.
+    /// Is the result of every operation that a NaN enters; no further union makes it valid again.
     const BROKEN: Self = Self {
         min: Vec3::NAN,
         max: Vec3::NAN,
     };
 
-    /// The smallest box that holds all `points`; [`Aabb::EMPTY`] for none, and a broken box where a coordinate is NaN.
+    /// Returns the smallest box that contains all `points`: [`Aabb::EMPTY`] if there are none, and a broken box if a
+    /// coordinate is NaN.
     pub fn from_points(points: impl IntoIterator<Item = Vec3>) -> Self {
         points.into_iter().fold(Self::EMPTY, |bounds, point| {
             bounds.union(Self::new(point, point))
         })
     }
 
-    /// The smallest box that holds both; a broken box where either is.
+    /// Returns the smallest box that contains both boxes, or a broken box if either is broken.
     pub fn union(self, other: Self) -> Self {
-        // The minimum of a number and a NaN is one or the other, by order.
+        // `min` and `max` of a number and a NaN return the number or the NaN, depending on the order.
         if self.is_nan() || other.is_nan() {
             return Self::BROKEN;
         }
@@ -51,9 +54,9 @@ impl Aabb {
         }
     }
 
-    /// The box of the eight transformed corners: holds the transformed geometry for every affine `target_from_source`. An empty
-    /// box stays empty. The box is broken where this one is, and where the matrix makes a corner NaN; an infinite box stays
-    /// infinite, on all axes.
+    /// Returns the bounds of the eight transformed corners, which contain the transformed geometry for every affine
+    /// `target_from_source`. An empty box stays empty. An infinite box stays infinite, on all axes. The result is
+    /// broken if this box is broken or the matrix makes a corner NaN.
     pub fn transformed(self, target_from_source: &Mat4) -> Self {
         if self.is_empty() {
             return Self::EMPTY;
@@ -66,13 +69,13 @@ impl Aabb {
         )
     }
 
-    /// True where `min > max` on some axis and no coordinate is NaN: a broken box is not empty, and [`Aabb::is_finite`] is what
-    /// tells it.
+    /// Returns whether `min > max` on some axis and no coordinate is NaN. A broken box is not empty;
+    /// [`Aabb::is_finite`] returns false for it.
     pub fn is_empty(&self) -> bool {
         self.min.cmpgt(self.max).any() && !self.is_nan()
     }
 
-    /// True where every coordinate is finite.
+    /// Returns whether every coordinate is finite. It is false for [`Aabb::EMPTY`].
     pub fn is_finite(&self) -> bool {
         self.min.is_finite() && self.max.is_finite()
     }
@@ -105,7 +108,7 @@ impl Aabb {
         }
     }
 
-    /// Corner `index` in `0..8`: bit 0 chooses x, bit 1 y, bit 2 z; a set bit takes `max`.
+    /// Returns corner `index` in `0..8`: bit 0 selects x, bit 1 y and bit 2 z, and a set bit selects `max`.
     pub(crate) fn corner(&self, index: usize) -> Vec3 {
         let pick = |axis: usize| {
             if index >> axis & 1 == 1 {

@@ -1,4 +1,4 @@
-//! Validation shared by the lights: each failure names field, rule and value.
+//! Validates the values that all kinds of lights take. Each failure names the field, the rule and the value.
 
 use std::fmt::Display;
 
@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use crate::{Aabb, ShadowError};
 
+/// Accepts `value` where `holds` is true; `rule` states in words what `holds` tests.
 pub(crate) fn in_range(
     field: &'static str,
     rule: &'static str,
@@ -23,11 +24,12 @@ pub(crate) fn in_range(
     }
 }
 
-/// Infinity allowed.
+/// Accepts numbers above 0, infinity included.
 pub(crate) fn above_zero(field: &'static str, value: f32) -> Result<(), ShadowError> {
     in_range(field, "above 0 (infinity allowed)", value > 0.0, value)
 }
 
+/// Accepts vectors whose components are all finite.
 pub(crate) fn finite_vector(field: &'static str, value: DVec3) -> Result<(), ShadowError> {
     if value.is_finite() {
         Ok(())
@@ -39,6 +41,7 @@ pub(crate) fn finite_vector(field: &'static str, value: DVec3) -> Result<(), Sha
     }
 }
 
+/// Accepts finite vectors of any length but zero.
 pub(crate) fn direction(field: &'static str, value: DVec3) -> Result<(), ShadowError> {
     finite_vector(field, value)?;
     if value == DVec3::ZERO {
@@ -47,8 +50,9 @@ pub(crate) fn direction(field: &'static str, value: DVec3) -> Result<(), ShadowE
     Ok(())
 }
 
+/// Accepts bounds that are empty or finite.
 pub(crate) fn bounds(field: &'static str, bounds: &Aabb) -> Result<(), ShadowError> {
-    // Empty bounds stand for nothing and may be infinite; NaN compares false and is not empty.
+    // Empty bounds contain nothing and may be infinite. Bounds with a NaN do not count as empty.
     if bounds.is_empty() || bounds.is_finite() {
         return Ok(());
     }

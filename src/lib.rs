@@ -224,7 +224,7 @@ pub use receive::{
 };
 pub use {glam, wgpu};
 
-/// What casters are made of: how their vertices are laid out and shaded, and the ready-made mesh.
+/// Contains what casters are made of: the layout and shading of their vertices, and a ready-made mesh.
 pub mod caster {
     pub use crate::cast::{
         CasterPipelineDescriptor, CasterVertex, MeshCasterDescriptor, MeshIndices, ModelTransform,
@@ -233,12 +233,12 @@ pub mod caster {
     pub use crate::fit::CasterShape;
 }
 
-/// Pools of spot and point lights: many lights in one texture array, looked up by index.
+/// Contains pools of spot and point lights: many lights in one texture array, looked up by index.
 pub mod pool {
     pub use crate::light::{OmniShadowPool, PoolDescriptor, PoolLight, ShadowSlot, SpotShadowPool};
 }
 
-/// What lights did in a frame, and how fine their maps are.
+/// Contains reports of what lights did in a frame and how fine their maps are.
 pub mod report {
     pub use crate::cast::BrokenBounds;
     pub use crate::fit::SliceReport;

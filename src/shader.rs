@@ -1,24 +1,28 @@
-//! The WGSL as data: a table of plain, directive-free modules, what each requires, and their union.
+//! Contains the WGSL as data: a table of plain modules without directives, what each of them requires, and their union.
 //!
-//! All names begin with `shadow_`, `Shadow` or `SHADOW_`, so the texts concatenate with any engine's, in any order, and load
-//! as they are as WESL or naga_oil modules. Sampling functions take texture, sampler and view as arguments; nothing in
-//! [`MODULES`] declares a binding but the caster modules and those of whole passes. An engine with its own bind groups composes
-//! `["bias_plane", "filter_tent3"]` and calls
-//! `shadow_filter_tent3(map, map_sampler, shadow_receiver_plane(view, position, normal))`. On devices whose shaders cannot
-//! gather (OpenGL ES 3.0, WebGL 2) it names `"texels_by_samples"` beside them and binds the maps as `texture_2d_array<f32>`.
+//! All names begin with `shadow_`, `Shadow` or `SHADOW_`, so the texts can be concatenated with those of any engine, in
+//! any order, and be loaded unchanged as WESL or naga_oil modules. The sampling functions take texture, sampler and
+//! view as arguments. No module in [`MODULES`] declares a binding, except the caster modules and those of whole passes.
+//!
+//! An engine with its own bind groups composes `["bias_plane", "filter_tent3"]` and calls
+//! `shadow_filter_tent3(map, map_sampler, shadow_receiver_plane(view, position, normal))`; `shadow_limited_by_depth(view,
+//! position, visibility)` then ends shadows at the cameras' `max_distance`. On devices whose shaders
+//! cannot gather (OpenGL ES 3.0, WebGL 2) it names `"texels_by_samples"` beside them and binds the maps as
+//! `texture_2d_array<f32>`.
 
 use crate::error::BindingsError;
 
-/// One WGSL text of the library.
+/// Holds one WGSL text of the library.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShaderModule {
-    /// Its name in the table: the file under `wgsl/` without its ending.
+    /// Is its name in the table: that of the file under `wgsl/` without its extension.
     pub name: &'static str,
-    /// WGSL without any directive.
+    /// Is the WGSL, which contains no directive.
     pub source: &'static str,
-    /// Names of the modules whose declarations it uses.
+    /// Lists the names of the modules whose declarations it uses.
     pub requires: &'static [&'static str],
-    /// Name of the module whose place it takes in a composition that names it: both declare the same, for different devices.
+    /// Is the name of the module that it replaces in a composition that names it. Both make the same declarations, for
+    /// different devices.
     pub replaces: Option<&'static str>,
 }
 
@@ -61,7 +65,7 @@ const TEXELS_BY_SAMPLES: ShaderModule = ShaderModule {
     ..module!("texels_by_samples", "texels_by_samples.wgsl", ["view"])
 };
 
-/// Every WGSL text of the library.
+/// Lists every WGSL text of the library.
 pub const MODULES: &[ShaderModule] = &[
     module!("view", "view.wgsl", []),
     module!("bias_plane", "bias_plane.wgsl", ["view"]),
@@ -124,11 +128,11 @@ pub const MODULES: &[ShaderModule] = &[
     GATHER_PROBE,
 ];
 
-/// The texts of the named modules and of all that they require, each once, in table order; a named module that replaces another
-/// stands in its place.
+/// Returns the texts of the named modules and of all modules that they require, each once, in the order of the table.
+/// A module that replaces another is included instead of the other.
 ///
 /// # Errors
-/// [`BindingsError::UnknownModule`] for a name that is not in [`MODULES`].
+/// Returns [`BindingsError::UnknownModule`] for a name that is not in [`MODULES`].
 pub fn compose(names: &[&str]) -> Result<String, BindingsError> {
     let mut wanted = [false; MODULES.len()];
     let mut open: Vec<&str> = names.to_vec();

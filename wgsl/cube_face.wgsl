@@ -1,7 +1,7 @@
-// Which face of a cube around a point light a place lies on: +x, -x, +y, -y, +z, -z are 0 to 5.
-//
-// Exactly one for every direction, ties and zero included: x before y before z. Rust twin: src/omni.rs.
+// Selects the face of the cube around a point light. CPU counterpart: src/light/omni.rs.
 
+// Returns the face on which a position lies, given the vector from the light to it: +x, -x, +y, -y, +z, -z are 0 to 5.
+// Every vector has exactly one face. Where components are equal, zero included, x is taken before y and y before z.
 fn shadow_cube_face(from_light: vec3<f32>) -> u32 {
     let reach = abs(from_light);
     if reach.x >= reach.y && reach.x >= reach.z {

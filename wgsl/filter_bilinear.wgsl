@@ -1,6 +1,7 @@
-// Gathered 2x2 texels, bilinearly weighted in full precision. Reach: one texel.
-// Rust twin: src/receive/reference.rs. Requires: view, texels, gather.
+// Compares 2x2 gathered texels and weights the results bilinearly in full precision. The reach is one texel.
+// CPU reference: src/receive/reference.rs. Requires: view, texels, gather.
 
+// Returns the visibility of the light, in [0, 1].
 fn shadow_filter_bilinear(
     map: ShadowMap,
     map_sampler: sampler,

@@ -1,6 +1,8 @@
-// The textbook's 3x3 percentage-closer filter: the mean of nine nearest comparisons one texel apart, in steps of a ninth, out
-// of four gathers. Reach: one and a half texels. Rust twin: src/receive/reference.rs. Requires: view, texels, gather.
+// Applies the 3x3 percentage-closer filter of the tutorial at learnopengl.com: the mean of nine nearest comparisons one
+// texel apart, in steps of a ninth, from four gathers. The reach is one and a half texels.
+// CPU reference: src/receive/reference.rs. Requires: view, texels, gather.
 
+// Returns the visibility of the light, in [0, 1].
 fn shadow_filter_box(
     map: ShadowMap,
     map_sampler: sampler,

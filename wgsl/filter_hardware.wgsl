@@ -1,6 +1,8 @@
-// The sampler's own 2x2 comparison, bilinearly weighted; its weights have as few as four bits. One reference serves four
-// texels, so the gradient is not used. Reach: one texel. Rust twin: src/receive/reference.rs. Requires: view.
+// Uses the sampler's own 2x2 comparison, which is bilinearly weighted; its weights have as few as four bits. Four
+// texels share one reference depth, so the gradient is not used. The reach is one texel. CPU reference:
+// src/receive/reference.rs. Requires: view.
 
+// Returns the visibility of the light, in [0, 1].
 fn shadow_filter_hardware(
     map: texture_depth_2d_array,
     map_sampler: sampler_comparison,

@@ -1,5 +1,7 @@
-// One texel, one comparison. Reach: half a texel. Rust twin: src/receive/reference.rs. Requires: view, texels, gather.
+// Compares with one texel. The reach is half a texel.
+// CPU reference: src/receive/reference.rs. Requires: view, texels, gather.
 
+// Returns 1 where the receiver is lit, and 0 where it is shadowed.
 fn shadow_filter_nearest(
     map: ShadowMap,
     map_sampler: sampler,

@@ -1,40 +1,47 @@
-// Soft shadows of a light with size: percentage-closer soft shadows (Fernando 2005), calibrated instead of tuned.
+// Renders soft shadows of a light with a size: percentage-closer soft shadows (Fernando 2005), calibrated instead of
+// tuned.
 //
-// A point of ndc depth z is shadowed, by an occluder of depth b in front of it, within a disk of radius (b - z) times a
-// constant of the view, for orthographic and perspective views alike: with h the distance along the axis, a sun of angular
-// diameter a spreads h tan(a/2) in world units, and a local light of radius r spreads r (1/w_b - 1/w_z) in tangents, which is
-// r / near times the difference of depths. `receiver.penumbra` is that constant in texels along x and y. First the mean depth
-// of the occluders that can hide a part of the light is found, then visibility is the mean over the disk that they spread.
-// Exact for one planar occluder parallel to the map; elsewhere in error by the averaging of occluders.
-// Every texel is compared with the receiver's own plane, as in `gather`. Rust twin: src/receive/reference.rs.
-// Requires: view, texels, gather, filter_tent3.
+// An occluder of ndc depth b shadows a point of ndc depth z behind it within a disk whose radius is (b - z) times a
+// constant of the view, for orthographic and perspective views alike. With h the distance along the axis, a sun of
+// angular diameter a spreads h tan(a/2) in world units; a local light of radius r spreads r (1/w_b - 1/w_z) in
+// tangents, which is r / near times the difference of depths. `receiver.penumbra` is that constant in texels along x
+// and y.
+//
+// A first loop finds the mean depth of the occluders that can hide a part of the light. A second loop averages
+// visibility over the disk that they spread. The result is exact for one planar occluder parallel to the map; elsewhere
+// averaging the occluders causes an error. Every texel is compared with the receiver's own plane, as in `gather`.
+//
+// CPU reference: src/receive/reference.rs. Requires: view, texels, gather, filter_tent3.
 
-// Widest disk in texels; maps keep this much free around what they cover.
+// Is the radius of the widest disk in texels. Maps keep this much, and a texel more, free around what they cover.
 const SHADOW_PENUMBRA_REACH: f32 = 32.0;
+// Are the numbers of samples of the two loops.
 const SHADOW_PENUMBRA_SEARCH_TAPS: u32 = 24u;
 const SHADOW_PENUMBRA_FILTER_TAPS: u32 = 32u;
 
-// The golden angle times `index`, within a turn: sine and cosine are exact only there.
+// Returns the golden angle times `index` in radians, reduced to one turn: sine and cosine are accurate only there.
 fn shadow_golden_angle(index: u32) -> f32 {
     return fract(f32(index) * 0.38196601) * 6.2831853;
 }
 
-// Sample `index` of `count`, evenly over the unit disk along a golden-angle spiral (Vogel 1979).
+// Returns sample `index` of `count` that are spread evenly over the unit disk along a golden-angle spiral (Vogel 1979).
 fn shadow_disk(index: u32, count: u32) -> vec2<f32> {
     let radius = sqrt((f32(index) + 0.5) / f32(count));
     let angle = shadow_golden_angle(index);
     return radius * vec2<f32>(cos(angle), sin(angle));
 }
 
-// Sample `index` of `count` for the search: closer together toward the middle, where alone low occluders count. z is the area
-// that it stands for, up to a factor: radius t^1.5 at t = (index + 1/2) / count covers t^1.5 * t^0.5 of area per step.
+// Returns sample `index` of `count` of the search for occluders. The samples lie closer together toward the middle,
+// since low occluders can hide the light only there. z is the area that the sample stands for, up to a factor: the
+// radius t^1.5 at t = (index + 1/2) / count covers an area of t^1.5 * t^0.5 per step.
 fn shadow_search_disk(index: u32, count: u32) -> vec3<f32> {
     let t = (f32(index) + 0.5) / f32(count);
     let angle = shadow_golden_angle(index);
     return vec3<f32>(t * sqrt(t) * vec2<f32>(cos(angle), sin(angle)), t * t);
 }
 
-// Sum of depth differences, and number, of the occluders among four texels that can hide a part of the light: x and y.
+// Finds the occluders among four texels that can hide a part of the light. Returns the sum of their depth differences
+// in x and their number in y.
 fn shadow_occluders(
     map: ShadowMap,
     map_sampler: sampler,
@@ -44,7 +51,7 @@ fn shadow_occluders(
     let depths = shadow_texels(map, map_sampler, receiver, first);
     let nearer = depths - shadow_references(receiver, first);
     let height = depths - receiver.depth;
-    // Within the disk that an occluder of this height spreads, and half a texel more for its own size.
+    // An occluder counts within the disk that its height spreads, and half a texel farther for its own size.
     let x = abs(vec4<f32>(0.0, 1.0, 0.0, 1.0) + first.x + 0.5 - receiver.texel.x) - 0.5;
     let y = abs(vec4<f32>(0.0, 0.0, 1.0, 1.0) + first.y + 0.5 - receiver.texel.y) - 0.5;
     let across = max(x, vec4<f32>(0.0)) / receiver.penumbra.x;
@@ -54,6 +61,7 @@ fn shadow_occluders(
     return vec2<f32>(dot(counts, height), dot(counts, vec4<f32>(1.0)));
 }
 
+// Returns the visibility of the light, in [0, 1].
 fn shadow_filter_pcss(
     map: ShadowMap,
     map_sampler: sampler,
@@ -62,7 +70,7 @@ fn shadow_filter_pcss(
     return shadow_penumbra(map, map_sampler, receiver, mat2x2<f32>(1.0, 0.0, 0.0, 1.0));
 }
 
-// The same with both patterns turned by `turn`.
+// Returns the visibility of the light, in [0, 1], with both sample patterns rotated by `turn`.
 fn shadow_penumbra(
     map: ShadowMap,
     map_sampler: sampler,
@@ -87,14 +95,14 @@ fn shadow_penumbra(
     }
     var lit = 0.0;
     for (var i = 0u; i < SHADOW_PENUMBRA_FILTER_TAPS; i++) {
-        let place = receiver.texel + (turn * shadow_disk(i, SHADOW_PENUMBRA_FILTER_TAPS)) * radius - 0.5;
-        let first = floor(place);
-        let s = place - first;
+        let from_centers = receiver.texel + (turn * shadow_disk(i, SHADOW_PENUMBRA_FILTER_TAPS)) * radius - 0.5;
+        let first = floor(from_centers);
+        let s = from_centers - first;
         let block = shadow_gather(map, map_sampler, receiver, first);
         let rows = mix(block.xz, block.yw, s.x);
         lit += mix(rows.x, rows.y, s.y);
     }
-    // From the hard filter at one texel to the disk at two.
+    // Between radii of one and two texels the hard filter blends into the disk.
     let share = clamp(max(radius.x, radius.y) - 1.0, 0.0, 1.0);
     return mix(hard, lit / f32(SHADOW_PENUMBRA_FILTER_TAPS), share);
 }

@@ -1,7 +1,8 @@
-// Bilinear comparisons under the kernel [1 2 1] per axis: 4x4 texels in four gathers. Reach: two texels.
-// Kernel: Castaño 2013, "Shadow Mapping Summary", here over raw depths so that every texel has its own reference.
-// Rust twin: src/receive/reference.rs. Requires: view, texels, gather.
+// Applies the kernel [1 2 1] per axis to bilinear comparisons: 4x4 texels in four gathers. The reach is two texels. The
+// kernel is that of Castaño 2013, "Shadow Mapping Summary", here over raw depths, so that every texel has a reference
+// depth of its own. CPU reference: src/receive/reference.rs. Requires: view, texels, gather.
 
+// Returns the visibility of the light, in [0, 1].
 fn shadow_filter_tent3(
     map: ShadowMap,
     map_sampler: sampler,
@@ -11,7 +12,8 @@ fn shadow_filter_tent3(
     let base = floor(from_centers);
     let s = from_centers - base;
     let first = base - 1.0;
-    // Weights of pairs of texels along each axis, times four. Written out: a loop would be bounded and not be unrolled.
+    // These are the weights of pairs of texels along each axis, times four. The sum is written out, since naga limits
+    // the iterations of a loop, and compilers do not unroll such a loop.
     let left = vec2<f32>(1.0 - s.x, 2.0 - s.x);
     let right = vec2<f32>(1.0 + s.x, s.x);
     let upper = vec2<f32>(1.0 - s.y, 2.0 - s.y);

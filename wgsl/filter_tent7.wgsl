@@ -1,7 +1,8 @@
-// Bilinear comparisons under the kernel [1 5 12 16 12 5 1] per axis: 8x8 texels in sixteen gathers. Reach: four texels.
-// Kernel: Castaño 2013, "Shadow Mapping Summary", here over raw depths so that every texel has its own reference.
-// Rust twin: src/receive/reference.rs. Requires: view, texels, gather.
+// Applies the kernel [1 5 12 16 12 5 1] per axis to bilinear comparisons: 8x8 texels in sixteen gathers. The reach is
+// four texels. The kernel is that of Castaño 2013, "Shadow Mapping Summary", here over raw depths, so that every texel
+// has a reference depth of its own. CPU reference: src/receive/reference.rs. Requires: view, texels, gather.
 
+// Returns the visibility of the light, in [0, 1].
 fn shadow_filter_tent7(
     map: ShadowMap,
     map_sampler: sampler,
@@ -13,7 +14,7 @@ fn shadow_filter_tent7(
     let first = base - 3.0;
     let across = shadow_tent7_weights(s.x);
     let down = shadow_tent7_weights(s.y);
-    // Written out: a loop would be bounded and not be unrolled.
+    // The sum is written out, since naga limits the iterations of a loop, and compilers do not unroll such a loop.
     let lit = shadow_tent7_rows(map, map_sampler, receiver, first, across, down[0])
         + shadow_tent7_rows(map, map_sampler, receiver, first + vec2<f32>(0.0, 2.0), across, down[1])
         + shadow_tent7_rows(map, map_sampler, receiver, first + vec2<f32>(0.0, 4.0), across, down[2])
@@ -21,7 +22,7 @@ fn shadow_filter_tent7(
     return shadow_sharpen(lit / 2704.0, receiver.sharpness);
 }
 
-// Weights of four pairs of texels along an axis, times fifty-two.
+// Returns the weights of four pairs of texels along an axis, times fifty-two.
 fn shadow_tent7_weights(s: f32) -> mat4x2<f32> {
     return mat4x2<f32>(
         vec2<f32>(1.0 - s, 5.0 - 4.0 * s),
@@ -31,7 +32,7 @@ fn shadow_tent7_weights(s: f32) -> mat4x2<f32> {
     );
 }
 
-// Two rows of eight texels.
+// Returns the weighted sum of the comparisons of two rows of eight texels.
 fn shadow_tent7_rows(
     map: ShadowMap,
     map_sampler: sampler,

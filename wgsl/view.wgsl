@@ -1,102 +1,111 @@
-// One depth render of a light as a receiver sees it, and where a receiver stands in it.
+// Describes one depth render of a light to the shader that samples it, and the position of a receiver in it.
 //
-// Spaces: positions and normals are render space; texels have their origin top left and centres at halves; depth is ndc,
-// reversed (near 1, far 0, empty map 0).
-// Rust twins: src/receive/uniforms.rs (layout), src/receive/reference.rs (arithmetic in f64).
+// Spaces: positions and normals are in render space. Texel coordinates have their origin at the top left and texel
+// centres at halves. Depth is ndc, reversed (near 1, far 0, empty map 0).
+//
+// CPU counterparts: src/receive/uniforms.rs (layout), src/receive/reference.rs (arithmetic in f64).
 
 struct ShadowViewUniform {
-    // Homogeneous texel x, texel y, depth and w from coordinates relative to the anchor.
+    // Transforms coordinates relative to the anchor to homogeneous texel x, texel y, ndc depth and w.
     texel_from_anchor: mat4x4<f32>,
-    // Rows of the inverse transpose: they take a plane (normal, -normal · point) to texel space.
+    // Are rows of the inverse transpose, which transform a plane (normal, -normal · point) to texel space.
     plane_across: vec4<f32>,
     plane_down: vec4<f32>,
     plane_depth: vec4<f32>,
-    // Toward the light along the view's axis; w = 1 for a local light, whose place is the anchor, 0 for a directional one.
+    // Is the unit vector toward the light along the view's axis. w is 1 for a local light, which is at the anchor, and
+    // 0 for a directional one.
     light: vec4<f32>,
-    // A point of render space inside the view.
+    // Is a point of render space inside the view; for a local light, the light's position.
     anchor: vec3<f32>,
+    // Is the layer of the map.
     layer: u32,
-    // Texels between which a lookup stays inside the map, kernel and bias included: x and y from, x and y to. Empty (from > to)
-    // where nothing casts.
+    // Bounds the texel coordinates at which a lookup stays inside the map, with kernel and bias included: least x,
+    // least y, greatest x, greatest y. The least ones exceed the greatest ones where nothing casts into the view.
     inner: vec4<f32>,
+    // Is the number of texels per side of the map.
     map_size: f32,
-    // Rounding error of a comparison: absolute in ndc depth, relative to the depth, and across the map in texels.
+    // Are the rounding errors of a comparison: absolute in ndc depth, in relation to the depth, and across the map in
+    // texels.
     depth_error: f32,
     depth_error_relative: f32,
     lateral_error: f32,
-    // Offset along the normal in texels times |nx| + |ny| of the normal in light space.
+    // Is the offset along the normal, in texels times |nx| + |ny| of the normal in light space.
     offset_texels: f32,
-    // Offset along the normal in world units, for the rounding of render coordinates.
+    // Is the offset along the normal in world units that allows for the rounding of render coordinates.
     offset_world: f32,
-    // Manual bias in world units.
+    // Are the parameters of the manual bias, in world units.
     manual_constant: f32,
     manual_slope: f32,
-    // Edge sharpness of gathered filters; 1 is plain.
+    // Is the edge sharpness of gathered filters; 1 leaves their ramp as it is.
     sharpness: f32,
-    // World distance from the anchor beyond which a local light does not reach.
+    // Is the world distance from the anchor beyond which a local light does not reach.
     range: f32,
-    // Cosine of the half-angle of a cone around the view's axis; -2 for none.
+    // Is the cosine of the half-angle of the cone around the view's axis; -2 if there is no cone.
     cone_cosine: f32,
-    // Radius in world units of the direction-space filters.
+    // Is the radius in world units of the direction-space filters.
     sample_radius: f32,
-    // The viewer in render space; w = 0 where no viewer is known.
-    viewer: vec4<f32>,
-    // Texels along x and y over which a light with size spreads a penumbra, per difference of ndc depth.
+    // Is the position of the first camera in render space. w is 1, or 0 where the frame has no camera.
+    camera: vec4<f32>,
+    // Is the radius of a penumbra in texels along x and y, per difference of ndc depth.
     penumbra: vec2<f32>,
-    // Texels from the border within which a cascade gives way to the next.
+    // Is the distance from the border, in texels, within which a cascade blends into the next one.
     fade_texels: f32,
-    // Where the first texel lies in a grid that is fixed in the world, modulo 65536: x in the low half, y in the high.
+    // Is the position of the first texel in a grid that is fixed in the world, modulo 65536: x in the low 16 bits, y in
+    // the high 16 bits.
     grid: u32,
-    // Where shadows end. For a directional light a plane: its product with a position is above one where shadows are whole and
-    // below zero where they have ended. For a local light: x times the distance from the light is taken from w for the same.
+    // Is where shadows end. For a directional light it is a plane: its product with a position is above one where shadows are whole and
+    // below zero where they have ended. For a local light, x times the distance from the light is taken from w for the same.
     limit: vec4<f32>,
 }
 
 struct ShadowReceiver {
+    // Is the position in texel coordinates.
     texel: vec2<f32>,
-    // Reference depth at `texel`, moved toward the light by the bias.
+    // Is the reference depth at `texel`, moved toward the light by the bias.
     depth: f32,
-    // Change of the reference depth per texel along x and y: the receiver's own plane, or zero.
+    // Is the change of the reference depth per texel along x and y: that of the receiver's tangent plane, or zero.
     gradient: vec2<f32>,
     layer: u32,
     map_size: f32,
     sharpness: f32,
-    // Radius of a penumbra in texels per difference of depth.
+    // Is the radius of a penumbra in texels per difference of depth.
     penumbra: vec2<f32>,
-    // The map's first texel in a grid that is fixed in the world.
+    // Is the position of the map's first texel in a grid that is fixed in the world.
     grid: u32,
-    // `shadow_view_holds` of the place: where it is false, the lookup means nothing and the place is lit.
+    // Is the result of `shadow_view_holds` for the receiver's position. Where it is false, the lookup has no meaning
+    // and the position is lit.
     inside: bool,
 }
 
-// Does the map say anything of a place in render space: inside its sides, not beyond its far plane, in front of a local light
-// and within its cone and range? Where it does not, the place is lit.
+// Returns whether the map covers a position in render space: within its sides, not beyond its far plane, in front of a
+// local light, and within the light's cone and range. A position that no view covers is lit.
 fn shadow_view_holds(view: ShadowViewUniform, position: vec3<f32>) -> bool {
     let relative = position - view.anchor;
     let distance_squared = dot(relative, relative);
-    // The cone stands before the range for the sake of Mesa's software Vulkan driver (seen in 22.3, which Debian 12 has). It
-    // looks for branches that depend on uniforms alone, and notes each member of a uniform buffer that it meets in a condition
-    // before the first value that varies; for the fourth buffer of a stage and those after it, it writes the note past the end
-    // of its table, and crashes. Of the cone it meets the place first, of `a <= b` the right side. The biases select instead of
-    // branching for the same reason.
+    // The cone is tested before the range because of a defect in Mesa's software Vulkan driver (seen in 22.3, which is
+    // that of Debian 12). The driver looks for branches that depend on uniforms alone, and records each member of a
+    // uniform buffer that it finds in a condition before the first value that varies. For the fourth and later buffers
+    // of a stage it writes that record past the end of its table, and crashes. In the test of the cone it finds the
+    // position first, as the left side of `>=`; in a test with `<=`, such as that of the range, it finds the right side
+    // first. For the same reason the biases use `select` instead of branches.
     let reached = -dot(relative, view.light.xyz) >= view.cone_cosine * sqrt(distance_squared)
         && distance_squared <= view.range * view.range;
     return reached && shadow_view_covers(view, position);
 }
 
-// The same of a directional light, which has neither cone nor range.
+// Returns whether the map covers a position in render space, for a directional light, which has neither cone nor range.
 fn shadow_view_covers(view: ShadowViewUniform, position: vec3<f32>) -> bool {
-    let place = view.texel_from_anchor * vec4<f32>(position - view.anchor, 1.0);
-    let texel = place.xy / place.w;
+    let homogeneous = view.texel_from_anchor * vec4<f32>(position - view.anchor, 1.0);
+    let texel = homogeneous.xy / homogeneous.w;
     let within = all(texel >= view.inner.xy) && all(texel <= view.inner.zw);
-    return within && place.w > 0.0 && place.z >= 0.0;
+    return within && homogeneous.w > 0.0 && homogeneous.z >= 0.0;
 }
 
-// Weight of a cascade at a place that it holds, where cascades blend: one, and less in the last texels before its border. Never
-// zero, so that a place in one cascade alone has a weighted mean.
+// Returns the weight of a cascade at a position that it covers, where cascades blend: one, and less in the last texels
+// before its border. It is never zero, so that a position in one cascade alone has a weighted mean.
 fn shadow_view_weight(view: ShadowViewUniform, position: vec3<f32>) -> f32 {
-    let place = view.texel_from_anchor * vec4<f32>(position - view.anchor, 1.0);
-    let texel = place.xy / place.w;
+    let homogeneous = view.texel_from_anchor * vec4<f32>(position - view.anchor, 1.0);
+    let texel = homogeneous.xy / homogeneous.w;
     let from_border = min(texel - view.inner.xy, view.inner.zw - texel);
     return clamp(min(from_border.x, from_border.y) / view.fade_texels, 1.0 / 4096.0, 1.0);
 }
@@ -116,14 +125,15 @@ fn shadow_not_limited(view: ShadowViewUniform, position: vec3<f32>, visibility: 
     return visibility;
 }
 
-// Returns `visibility` at a weight of one or more, and light at zero or less. The selection makes a weight that is not a number
-// light.
+// Returns `visibility` at a weight of one or more, to the bit, and light at zero or less. The selection makes a weight that is
+// not a number light.
 fn shadow_faded(weight: f32, visibility: f32) -> f32 {
-    return 1.0 - select(0.0, min(weight, 1.0) * (1.0 - visibility), weight > 0.0);
+    let faded = 1.0 - weight * (1.0 - visibility);
+    return select(select(1.0, faded, weight > 0.0), visibility, weight >= 1.0);
 }
 
-// The receiver of a place in render space that the bias has moved to `moved`, relative to the anchor, with `depth_offset`
-// toward the light.
+// Returns the receiver at `position` (render space), which the bias has moved to `moved` (relative to the anchor) and
+// by `depth_offset` (ndc depth) toward the light.
 fn shadow_receiver_at(
     view: ShadowViewUniform,
     position: vec3<f32>,
@@ -131,14 +141,14 @@ fn shadow_receiver_at(
     gradient: vec2<f32>,
     depth_offset: f32,
 ) -> ShadowReceiver {
-    let place = view.texel_from_anchor * vec4<f32>(moved, 1.0);
-    let depth = place.z / place.w;
+    let homogeneous = view.texel_from_anchor * vec4<f32>(moved, 1.0);
+    let depth = homogeneous.z / homogeneous.w;
     var receiver: ShadowReceiver;
-    receiver.texel = place.xy / place.w;
+    receiver.texel = homogeneous.xy / homogeneous.w;
     let on_map = all(receiver.texel >= vec2<f32>(0.0)) && all(receiver.texel <= vec2<f32>(view.map_size));
-    // Moved past a local light or off the map, as an offset along the normal may under the widest cones: lit, by a depth that
-    // is nearer than any map's.
-    let kept = place.w > 0.0 && on_map;
+    // Under the widest cones an offset along the normal may move the receiver past a local light or off the map. Such a
+    // receiver is lit: its depth is set nearer than any in the map.
+    let kept = homogeneous.w > 0.0 && on_map;
     receiver.depth = select(2.0, depth + depth_offset + depth * view.depth_error_relative, kept);
     receiver.gradient = gradient;
     receiver.layer = view.layer;
@@ -150,7 +160,7 @@ fn shadow_receiver_at(
     return receiver;
 }
 
-// The receiver's tangent plane in texel space: its components along texel x, texel y and depth.
+// Returns the receiver's tangent plane in texel space: its components along texel x, texel y and depth.
 fn shadow_plane(view: ShadowViewUniform, relative: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     let plane = vec4<f32>(normal, -dot(normal, relative));
     return vec3<f32>(
@@ -160,8 +170,8 @@ fn shadow_plane(view: ShadowViewUniform, relative: vec3<f32>, normal: vec3<f32>)
     );
 }
 
-// World distance along the normal by which `texels` of the map displace a plane at this place: texels * s * (|nx| + |ny|) with
-// s the world size of a texel and n the normal in light space.
+// Returns the world distance along the normal by which `texels` of the map displace a plane at this position:
+// texels * s * (|nx| + |ny|), with s the world size of a texel and n the normal in light space.
 fn shadow_normal_offset(
     view: ShadowViewUniform,
     relative: vec3<f32>,
@@ -172,12 +182,13 @@ fn shadow_normal_offset(
     return texels * max(w, 0.0) * (abs(plane.x) + abs(plane.y));
 }
 
-// World distance of the light from a place's tangent plane; endless for a directional light.
+// Returns the world distance of the light from the tangent plane at a position; 1e30 for a directional light.
 fn shadow_light_height(view: ShadowViewUniform, relative: vec3<f32>, normal: vec3<f32>) -> f32 {
     return select(1e30, abs(dot(normal, relative)), view.light.w > 0.0);
 }
 
-// What w is made of: one for an orthographic view, the distance along the axis for a perspective one.
+// Returns the row of the matrix that gives w: one for an orthographic view, the distance along the axis for a
+// perspective one.
 fn shadow_w_row(view: ShadowViewUniform) -> vec4<f32> {
     let columns = view.texel_from_anchor;
     return vec4<f32>(columns[0].w, columns[1].w, columns[2].w, columns[3].w);

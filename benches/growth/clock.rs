@@ -1,10 +1,10 @@
-//! Time on the device, between the commands of one encoder.
+//! Measures time on the device, between the commands of one encoder.
 
 use std::time::Instant;
 
 use crate::support::gpu::Gpu;
 
-/// Timestamps where the device has them, the wall's clock around submission and completion where not.
+/// Uses timestamps where the device has them, and otherwise the wall clock around submission and completion.
 pub struct Clock<'a> {
     gpu: &'a Gpu,
     queries: Option<(wgpu::QuerySet, wgpu::Buffer)>,
@@ -27,7 +27,7 @@ impl<'a> Clock<'a> {
         Self { gpu, queries }
     }
 
-    /// Seconds that the recorded commands take. Meaningful as a ratio to another such time only.
+    /// Returns the seconds that the recorded commands take. Only the ratio to another such time is meaningful.
     pub fn seconds(&self, record: impl FnOnce(&mut wgpu::CommandEncoder)) -> f64 {
         let mut encoder = self.gpu.encoder();
         let Some((set, resolved)) = &self.queries else {

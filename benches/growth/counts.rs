@@ -1,13 +1,13 @@
-//! What the maps of a frame took.
+//! Counts what the maps of a frame took.
 
 use wgpu_shadows::report::ShadowReport;
 
-/// Sums over the lights of a frame.
+/// Holds sums over the lights of a frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Counts {
     pub passes: u32,
     pub draws: u32,
-    /// Casters that came with a still part instead.
+    /// Counts the casters that were copied from static-caster caches instead of being drawn.
     pub copied: u32,
 }
 

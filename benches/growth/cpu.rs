@@ -1,4 +1,5 @@
-//! CPU time and allocations of `frame` and `record` together, and device time, against the number of casters and lights.
+//! Measures CPU time and allocations of `frame` and `record` together, and device time, against the number of casters
+//! and lights.
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
@@ -13,7 +14,7 @@ use super::stage::{self, Stage};
 use super::table::Growth;
 use crate::support::camera;
 
-/// CPU time and allocations of a frame against the number of casters, all of them in the map.
+/// Measures CPU time and allocations of a frame against the number of casters, all of them in the map.
 pub fn casters(stage: &Stage<'_>, most: u32) {
     let mut table = Growth::new(
         "sun, one cascade: `frame` and `record` on the CPU against casters (all drawn; nothing changed; almost all culled), and \
@@ -58,7 +59,8 @@ pub fn casters(stage: &Stage<'_>, most: u32) {
     table.print();
 }
 
-/// Fit and cull of four cascades before a camera that sees a corner of the crowd, and of a lamp in its middle.
+/// Measures fit and cull of four cascades before a camera that sees a corner of the crowd, and of a point light in its
+/// middle.
 pub fn culling(stage: &Stage<'_>, most: u32) {
     let mut table = Growth::new(
         "`frame` and `record` on the CPU against casters: four cascades out to 60 m, drawn and kept, and a lamp of 20 m, kept",
@@ -125,7 +127,7 @@ pub fn culling(stage: &Stage<'_>, most: u32) {
     table.print();
 }
 
-/// A frame against the number of point lights, over the same casters.
+/// Measures a frame against the number of point lights, over the same casters.
 pub fn lights(stage: &Stage<'_>) {
     let crowd = Crowd::new(stage.gpu, 500);
     let list = crowd.list();

@@ -1,4 +1,4 @@
-//! Many boxes as casters, all in one pair of buffers.
+//! Provides many boxes as casters, all in one pair of buffers.
 
 use glam::Vec3;
 use wgpu_shadows::{
@@ -10,15 +10,15 @@ use crate::support::gpu::Gpu;
 use crate::support::mesh::Mesh;
 use crate::support::random::Random;
 
-/// Boxes on a square of ground, one caster each.
+/// Holds boxes on a square of ground, one caster each.
 pub struct Crowd {
     pub boxes: Vec<BoxCaster>,
-    /// The same boxes as meshes, and as one, for drawing without the library.
+    /// Holds the same boxes as separate meshes, for drawing without the library.
     pub parts: Vec<Mesh>,
     pub mesh: Mesh,
 }
 
-/// A caster that draws its part of shared buffers.
+/// Is a caster that draws its part of shared buffers.
 pub struct BoxCaster {
     pipeline: CasterPipeline,
     vertices: wgpu::Buffer,
@@ -31,7 +31,7 @@ pub struct BoxCaster {
 }
 
 impl Crowd {
-    /// `count` boxes, four metres of ground each.
+    /// Makes `count` boxes with four metres of ground each.
     pub fn new(gpu: &Gpu, count: u32) -> Self {
         let half = half_side(count);
         let mut random = Random::new(31);
@@ -104,7 +104,7 @@ impl Crowd {
             .collect()
     }
 
-    /// Makes the `count` boxes nearest to a place change every frame, and no others.
+    /// Makes the `count` boxes nearest to a position change in every frame, and no others.
     pub fn set_in_motion(&mut self, count: u32, place: Vec3) {
         self.boxes.sort_by(|a, b| {
             let away = |caster: &BoxCaster| caster.bounds.min.distance_squared(place);
@@ -115,13 +115,13 @@ impl Crowd {
         }
     }
 
-    /// Bounds of all boxes.
+    /// Returns the bounds of all boxes.
     pub fn bounds(&self) -> Aabb {
         self.mesh.bounds()
     }
 }
 
-/// Half the side of the ground under `count` boxes.
+/// Returns half the side of the ground under `count` boxes.
 pub fn half_side(count: u32) -> f32 {
     (count as f32).sqrt()
 }

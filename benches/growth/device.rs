@@ -1,4 +1,4 @@
-//! Device time of maps and lookups: against cascades, map size and taps, and beside the bare minimum.
+//! Measures device time of maps and lookups against cascades, map size and taps, and compares it with the bare minimum.
 
 use glam::{DMat4, DVec3, DVec4, Vec3};
 use wgpu_shadows::{Bias, Coverage, Filter};
@@ -17,7 +17,7 @@ use crate::support::statistics::Spread;
 use crate::support::textbook::flat::DepthDrawer;
 use crate::support::textbook::meshes::{ViewUniform, WorldMeshes};
 
-/// A frame against the number of cascades, for a camera that sees to the end of the ground.
+/// Measures a frame against the number of cascades, for a camera that sees to the end of the ground.
 pub fn cascades(stage: &Stage<'_>) {
     let crowd = Crowd::new(stage.gpu, 2_000);
     let list = crowd.list();
@@ -48,7 +48,7 @@ pub fn cascades(stage: &Stage<'_>) {
     table.print();
 }
 
-/// The depth pass against the size of the map.
+/// Measures the depth pass against the size of the map.
 pub fn map_sizes(stage: &Stage<'_>, largest: u32) {
     let crowd = Crowd::new(stage.gpu, 500);
     let list = crowd.list();
@@ -77,7 +77,7 @@ pub fn map_sizes(stage: &Stage<'_>, largest: u32) {
     table.print();
 }
 
-/// Lookups against texture instructions, of a point light: the one kind that all filters suit.
+/// Measures lookups against texture instructions, for a point light, the one kind that all filters suit.
 pub fn taps(stage: &Stage<'_>) {
     let scene = lamp_scene(stage.gpu);
     let casters = SceneCasters::new(stage.gpu, &scene);
@@ -129,7 +129,7 @@ pub fn taps(stage: &Stage<'_>) {
             lookups(&mut own) / before
         }));
         println!("{:>18} {:.2}", filter_name(filter), ratio.median);
-        // Penumbrae end early where nothing hides the light.
+        // PCSS ends early where nothing hides the light.
         if filter.compares_each_texel() && filter.light_size() == 0.0 {
             table.add(f64::from(filter.texture_instructions()), [ratio.median]);
         }
@@ -137,7 +137,7 @@ pub fn taps(stage: &Stage<'_>) {
     table.print();
 }
 
-/// The library's depth pass beside the same triangles in one draw, without the library.
+/// Compares the library's depth pass with the same triangles in one draw without the library.
 pub fn bare_minimum(stage: &Stage<'_>) {
     println!(
         "\nsun, 2048 texels a side: the depth pass beside the same triangles without the library, in a draw each and all in one draw"
@@ -153,7 +153,7 @@ pub fn bare_minimum(stage: &Stage<'_>) {
             encoder
         });
         let view = sun.shadow.maps().views().next().expect("boxes cast");
-        // The bare pass clears to 1 and keeps the least depth: the same picture with its depth turned around.
+        // The bare pass clears to 1 and keeps the least depth: the same image with its depth reversed.
         let turned = DMat4::from_cols(
             DVec4::X,
             DVec4::Y,
@@ -187,7 +187,7 @@ pub fn bare_minimum(stage: &Stage<'_>) {
     }
 }
 
-/// Boxes on ground under a lamp, as a scene.
+/// Returns boxes on ground under a point light, as a scene.
 fn lamp_scene(gpu: &Gpu) -> Scene {
     let half = crowd::half_side(500);
     Scene {

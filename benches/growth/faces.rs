@@ -1,4 +1,5 @@
-//! A point light's six faces: a pass each against one pass for all, where the device draws several views at once.
+//! Compares a pass for each of a point light's six faces with one pass for all, where the device draws several views at
+//! once.
 
 use std::time::Instant;
 
@@ -16,11 +17,11 @@ use crate::support::mesh::Mesh;
 use crate::support::random::Random;
 use crate::support::statistics::Spread;
 
-/// Texels a side: few, for what is filled costs both ways the same.
+/// Is the number of texels per side: few, since filling them costs the same both ways.
 const MAP_SIZE: u32 = 32;
 
-/// Prints both ways for few and many casters that lie in two and three faces, or in all of them, so that none is culled; with
-/// few triangles and with many.
+/// Prints both ways for few and many casters, with few triangles and with many. The casters lie in two and three faces,
+/// or in all of them, so that none is culled.
 pub fn in_one_pass(stage: &Stage<'_>) {
     println!(
         "\npoint light: one pass for all faces beside a pass each (ratio of the times of frame, record, submission and \
@@ -51,7 +52,7 @@ pub fn in_one_pass(stage: &Stage<'_>) {
     }
 }
 
-/// False where the device does not draw six views at once.
+/// Prints a row, and returns false where the device does not draw six views at once.
 fn row(stage: &Stage<'_>, count: u32, touched: u32, rings: u32) -> bool {
     let gpu = stage.gpu;
     let mut lamp = |telling| Lamp::new(gpu, count, touched, rings, telling);
@@ -84,17 +85,17 @@ fn row(stage: &Stage<'_>, count: u32, touched: u32, rings: u32) -> bool {
     true
 }
 
-/// What casters say of their triangles, by which the library chooses.
+/// Selects how many triangles the casters report, by which the library chooses.
 #[derive(Clone, Copy)]
 enum Telling {
     Truth,
-    /// So few that one pass is cheaper.
+    /// Reports so few that one pass is cheaper.
     OneTriangle,
-    /// So that it is a pass each.
+    /// Reports nothing, which leads to a pass for each face.
     Nothing,
 }
 
-/// A point light and what stands around it.
+/// Holds a point light and the objects around it.
 struct Lamp {
     scene: ShadowScene,
     shadow: OmniShadow,
@@ -138,7 +139,7 @@ impl Lamp {
         }
     }
 
-    /// A frame with every face drawn, from its first command to its end.
+    /// Returns the time of a frame with every face drawn, from its first command to its end.
     fn seconds(&mut self, gpu: &Gpu) -> f64 {
         let list: Vec<&dyn ShadowCaster> = self
             .things

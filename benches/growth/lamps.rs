@@ -1,4 +1,4 @@
-//! A field of point lights over a crowd.
+//! Provides a field of point lights over a crowd.
 
 use glam::DVec3;
 use wgpu_shadows::{
@@ -9,17 +9,17 @@ use super::counts::Counts;
 use super::stage;
 use crate::support::gpu::Gpu;
 
-/// The golden angle in radians: successive lamps on a spiral keep their distance.
+/// Is the golden angle in radians: successive lights on a spiral keep their distance.
 const TURN: f64 = 2.399_963;
 
-/// Shadows of many lamps, with a scene that they share and that is kept from frame to frame.
+/// Holds the shadows of many point lights, with a scene that they share and that is reused from frame to frame.
 pub struct Lamps {
     scene: ShadowScene,
     shadows: Vec<OmniShadow>,
 }
 
 impl Lamps {
-    /// `count` lamps, 256 texels a side of each face.
+    /// Makes `count` lights with 256 texels per side of each face.
     pub fn new(gpu: &Gpu, count: u32) -> Self {
         let descriptor = OmniShadowDescriptor {
             map_size: 256,
@@ -32,7 +32,8 @@ impl Lamps {
         }
     }
 
-    /// Makes one frame for all lamps, spread over a square of ground of half the side `half`, records it, and tells what it took.
+    /// Makes one frame for all lights, which are spread over a square of ground of half the side `half`, records it,
+    /// and returns its counts.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -58,7 +59,7 @@ impl Lamps {
         counts
     }
 
-    /// The same with every view drawn.
+    /// Records such a frame with every view drawn.
     pub fn record_anew(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,

@@ -1,12 +1,12 @@
-//! How cost grows, one number at a time.
+//! Measures how cost grows, one number at a time.
 //!
 //! ```text
 //! cpu.rs        casters and lights: time and allocations on the CPU, and time on the device
 //! device.rs     cascades, map sizes, taps, and the bare minimum: time on the device
 //! faces.rs      a point light's faces in one pass and in a pass each
-//! motion.rs     the share of casters that move, and what a kept layer of the others saves
+//! motion.rs     the share of casters that move, and what the static-caster cache saves
 //! table.rs      tables and exponents
-//! stage.rs      what they share; crowd.rs, lamps.rs: many boxes and lights; counts.rs: draws and passes
+//! stage.rs      what the measurements share; crowd.rs, lamps.rs: many boxes and lights; counts.rs: draws and passes
 //! processor.rs  time and allocations on the CPU
 //! clock.rs      time on the device
 //! ```

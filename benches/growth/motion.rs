@@ -1,7 +1,7 @@
-//! What standing still saves: a frame against the share of casters that move.
+//! Measures what static casters save: a frame against the share of casters that move.
 //!
-//! A view whose light, fit and casters did not change keeps its map. One of whose casters some move keeps the others in a layer
-//! of their own, its still part, where copying that costs less than drawing them.
+//! A view whose light, fit and casters did not change keeps its map. A view of which only some casters move keeps the
+//! others in a static-caster cache, a texture of its own, where copying that costs less than drawing them.
 
 use glam::Vec3;
 use wgpu_shadows::{Coverage, Filter, ShadowCaster};
@@ -15,21 +15,21 @@ use super::table::Growth;
 
 const CASTERS: u32 = 2_000;
 const LAMPS: u32 = 32;
-/// Frames after which whatever does not change has been found out.
+/// Is the number of frames after which the library has found everything that does not change.
 const SETTLING: u32 = 8;
-/// Percent of the casters.
+/// Are percentages of the casters.
 const SHARES: [u32; 6] = [0, 1, 3, 10, 30, 100];
 
-/// Shadows of some lights over a crowd.
+/// Holds the shadows of some lights over a crowd.
 trait Lit {
-    /// Makes and records a frame, and tells what it took.
+    /// Makes and records a frame, and returns its counts.
     fn record_frame(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         casters: &[&dyn ShadowCaster],
     ) -> Counts;
 
-    /// Records and submits frames until what stands still is known to.
+    /// Records and submits frames until the library has found what is static.
     fn settle(&mut self, stage: &Stage<'_>, casters: &[&dyn ShadowCaster]) {
         for _ in 0..SETTLING {
             let mut encoder = stage.gpu.encoder();
@@ -39,7 +39,7 @@ trait Lit {
     }
 }
 
-/// A sun and a field of lamps, while more and more of the crowd around the middle moves.
+/// Measures a sun and a field of point lights, while more and more of the crowd around the middle moves.
 pub fn moving_share(stage: &Stage<'_>) {
     measure(
         stage,
@@ -133,12 +133,12 @@ impl Lit for Lamps {
     }
 }
 
-/// A frame in which one of many casters moves, beside the same frame drawn anew: what the still part saves, and from how many
-/// casters on.
-pub fn still_part(stage: &Stage<'_>) {
+/// Compares a frame in which one of many casters moves with the same frame drawn completely: what the static-caster
+/// cache saves, and from how many casters on.
+pub fn static_cache(stage: &Stage<'_>) {
     let mut table = Growth::new(
-        "still part: one of so many casters moves; device time as a ratio to drawing all of them anew, by texels a side (1 where no \
-         part is kept)",
+        "static-caster cache: one of so many casters moves; device time as a ratio to drawing all of them, by texels per side \
+         (1 where nothing is cached)",
         &["casters", "512", "1024", "2048", "4096"],
     );
     for count in [100, 300, 1_000, 3_000, 10_000] {

@@ -1,4 +1,4 @@
-//! Time and allocations of work on the CPU.
+//! Measures time and allocations of work on the CPU.
 
 use std::alloc::System;
 use std::time::Instant;
@@ -11,14 +11,14 @@ use crate::support::statistics::Spread;
 #[global_allocator]
 static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// What one call takes.
+/// Holds what one call takes.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
     pub microseconds: f64,
     pub allocations: f64,
 }
 
-/// Medians over `repeats` calls of `work`; `prepare` runs before each and is not counted.
+/// Returns medians over `repeats` calls of `work`; `prepare` runs before each and is not counted.
 pub fn measure<P, R>(
     repeats: u32,
     mut prepare: impl FnMut() -> P,

@@ -1,4 +1,4 @@
-//! What the measurements of growth share.
+//! Provides what the measurements of growth share.
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
@@ -12,17 +12,17 @@ use crate::support::camera;
 use crate::support::gpu::Gpu;
 use crate::support::statistics::Spread;
 
-/// A device, its clock, and how often everything is repeated.
+/// Holds a device, its clock, and the number of repetitions.
 pub struct Stage<'a> {
     pub gpu: &'a Gpu,
     pub clock: Clock<'a>,
     pub repeats: u32,
 }
 
-/// The sun of all measurements.
+/// Is the sun of all measurements.
 const SUN: DirectionalLight = DirectionalLight::new(Vec3::new(-0.5, -1.0, -0.3));
 
-/// Its shadows, with a scene that is kept from frame to frame.
+/// Holds the sun's shadows, with a scene that is reused from frame to frame.
 pub struct Sun {
     scene: ShadowScene,
     pub shadow: DirectionalShadow,
@@ -40,7 +40,7 @@ impl Sun {
         report.expect("a valid light")
     }
 
-    /// The same with every view drawn.
+    /// Records such a frame with every view drawn.
     pub fn record_anew(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -52,7 +52,7 @@ impl Sun {
 }
 
 impl Stage<'_> {
-    /// The sun's shadows.
+    /// Makes the sun's shadows.
     pub fn sun(&self, map_size: u32, cascades: u32, filter: Filter) -> Sun {
         let descriptor = DirectionalShadowDescriptor {
             map_size,
@@ -67,7 +67,8 @@ impl Stage<'_> {
         }
     }
 
-    /// `frame` and `record` on the CPU, in an encoder that is then thrown away; of a frame that changed, or of one that did not.
+    /// Measures `frame` and `record` on the CPU, in an encoder that is then dropped, for a frame that changed or for
+    /// one that did not.
     pub fn record_effort(
         &self,
         sun: &mut Sun,
@@ -89,7 +90,7 @@ impl Stage<'_> {
         )
     }
 
-    /// Device time of one thing divided by that of another, run by run.
+    /// Returns the device time of one thing divided by that of another, run by run.
     pub fn ratio(
         &self,
         mut own: impl FnMut(&mut wgpu::CommandEncoder),
@@ -105,7 +106,7 @@ impl Stage<'_> {
     }
 }
 
-/// What a frame brings.
+/// Returns the descriptor of a frame.
 pub fn frame<'d, 'c>(
     casters: &'c [&'c dyn ShadowCaster],
     coverage: Coverage<'d>,
@@ -118,7 +119,7 @@ pub fn frame<'d, 'c>(
     }
 }
 
-/// A camera at the edge of a square of ground, that sees to its far end.
+/// Returns a camera at the edge of a square of ground that sees to its far end.
 pub fn to_the_horizon(half: f32) -> CameraView {
     camera::looking(Vec3::new(0.0, 3.0, half), Vec3::new(0.0, 0.0, -half), 0.9)
 }

@@ -1,6 +1,6 @@
-//! Tables of figures that grow with a number, and how fast they do.
+//! Prints tables of figures that grow with a number, and how fast they do.
 
-/// A table with one row per size.
+/// Is a table with one row per size.
 pub struct Growth {
     title: String,
     columns: Vec<&'static str>,
@@ -8,7 +8,7 @@ pub struct Growth {
 }
 
 impl Growth {
-    /// The first of `columns` names the number that the others grow with.
+    /// Makes a table. The first of `columns` names the number that the others grow with.
     pub fn new(title: impl Into<String>, columns: &[&'static str]) -> Self {
         Self {
             title: title.into(),
@@ -21,7 +21,7 @@ impl Growth {
         self.rows.push((size, figures.into()));
     }
 
-    /// Prints rows, and under each column the exponent of its growth: 0 constant, 1 in proportion.
+    /// Prints the rows, and under each column the exponent of its growth: 0 is constant, 1 is in proportion.
     pub fn print(&self) {
         println!("\n{}", self.title);
         let header: String = self
@@ -43,7 +43,8 @@ impl Growth {
         println!("{:>18}{slopes}", "log-log slope");
     }
 
-    /// Least squares through the logarithms, without the row of size 0; none where another figure is not positive.
+    /// Returns the slope of least squares through the logarithms, without the row of size 0; `None` where another
+    /// figure is not positive.
     fn slope(&self, column: usize) -> Option<f64> {
         let places: Vec<(f64, f64)> = self
             .rows

@@ -1,24 +1,24 @@
-//! Where a scene is looked at from.
+//! Provides the cameras of scenes.
 
 use glam::camera::rh::{proj::directx::perspective_infinite_reverse, view::look_at_mat4};
 use glam::{DMat4, DVec3, Vec3};
 use wgpu_shadows::CameraView;
 
-/// Aspect of the pictures of generated scenes: width by height.
+/// Is the aspect ratio of the images of generated scenes: width by height.
 const ASPECT: f32 = 16.0 / 9.0;
 
-/// The ray of a pixel, in render space.
+/// Is the ray of a pixel, in render space.
 #[derive(Clone, Copy, Debug)]
 pub struct PixelRay {
-    /// On the near plane.
+    /// Is on the near plane.
     pub start: DVec3,
-    /// Unit length.
+    /// Has unit length.
     pub direction: DVec3,
-    /// Distance from the start to the far plane; infinite where there is none.
+    /// Is the distance from the start to the far plane; infinite where there is none.
     pub reach: f64,
 }
 
-/// A camera at `eye` that looks at `target`, right-handed, with reversed depth and without a far plane.
+/// Returns a camera at `eye` that looks at `target`, right-handed, with reversed depth and without a far plane.
 pub fn looking(eye: Vec3, target: Vec3, fov_y_radians: f32) -> CameraView {
     CameraView::new(
         look_at_mat4(eye, target, Vec3::Y),
@@ -26,13 +26,13 @@ pub fn looking(eye: Vec3, target: Vec3, fov_y_radians: f32) -> CameraView {
     )
 }
 
-/// Where a camera stands, in render space.
+/// Returns the position of a camera in render space.
 pub fn eye(camera: &CameraView) -> Vec3 {
     let render_from_view = camera.view_from_render.as_dmat4().inverse();
     render_from_view.w_axis.truncate().as_vec3()
 }
 
-/// Rays through the centres of the pixels, row by row from the top, of any projection with reversed depth.
+/// Returns rays through the centres of the pixels, row by row from the top, of any projection with reversed depth.
 pub fn pixel_rays(
     camera: &CameraView,
     [width, height]: [u32; 2],
@@ -51,7 +51,7 @@ fn pixel_ray(render_from_clip: &DMat4, x: f64, y: f64) -> PixelRay {
     let (near, middle, far) = (at_depth(1.0), at_depth(0.5), at_depth(0.0));
     let place = |clip: glam::DVec4| clip.truncate() / clip.w;
     let start = place(near);
-    // Without a far plane w is zero there, but for rounding.
+    // Without a far plane w is zero there, except for rounding.
     let has_far = far.w > 1e-9 * near.w;
     PixelRay {
         start,

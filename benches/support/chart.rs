@@ -1,4 +1,4 @@
-//! Scatter charts of cost against error, with logarithmic axes and named points.
+//! Draws scatter charts of cost against error, with logarithmic axes and named points.
 
 use std::error::Error;
 use std::path::Path;
@@ -9,40 +9,40 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 const SIZE: (u32, u32) = (1280, 860);
 const FONT: &str = "sans-serif";
 const LABEL_HEIGHT: i32 = 15;
-/// Mean width of a letter, for keeping labels apart.
+/// Is the mean width of a letter, for keeping labels apart.
 const LETTER_WIDTH: f64 = 6.6;
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 
-/// A configuration in a chart.
+/// Is a configuration in a chart.
 pub struct Point {
     pub cost: f64,
     pub error: f64,
-    /// Points of one series are joined.
+    /// Is the name of its series; points of one series are joined.
     pub series: String,
-    /// Which colour and entry of the legend.
+    /// Selects its colour and entry of the legend.
     pub family: String,
     pub mark: Mark,
-    /// What is written beside it, if anything.
+    /// Is the label beside it, if it has one.
     pub label: Option<String>,
     pub is_on_front: bool,
     pub is_default: bool,
 }
 
-/// The shape of a point.
+/// Is the shape of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
-    /// Derived bias, fitted to the camera.
+    /// Marks a derived bias, fitted to the camera.
     Circle,
-    /// Derived bias, whole scene.
+    /// Marks a derived bias over the whole scene.
     Square,
-    /// Another bias.
+    /// Marks another bias.
     Triangle,
-    /// The textbook.
+    /// Marks the textbook.
     Cross,
 }
 
-/// What a chart says around its points.
+/// Holds the texts around the points of a chart.
 pub struct Words<'a> {
     pub title: &'a str,
     pub cost: &'a str,
@@ -119,13 +119,13 @@ pub fn draw(path: &Path, words: &Words<'_>, points: &[Point]) -> Result<(), Box<
     Ok(())
 }
 
-/// Labels beside their points, each where it covers the least.
+/// Draws labels beside their points, each where it covers the least.
 fn draw_labels(
     root: &Area<'_>,
     points: &[&Point],
     places: &[(i32, i32)],
 ) -> Result<(), Box<dyn Error>> {
-    // Points first: labels keep off them.
+    // Points are entered first, so that labels avoid them.
     let mut taken: Vec<[i32; 4]> = places
         .iter()
         .map(|&(x, y)| [x - 5, y - 5, x + 5, y + 5])
@@ -186,7 +186,7 @@ fn draw_legend(
         };
         entry(mark, color(family, families), family)?;
     }
-    // Where all marks are circles, there is nothing to tell apart.
+    // Where all marks are circles, their shape distinguishes nothing.
     let plain = [Mark::Circle, Mark::Cross];
     if !points.iter().all(|point| plain.contains(&point.mark)) {
         entry(Mark::Circle, BLACK, "derived bias, map fits the camera")?;
@@ -206,7 +206,7 @@ fn draw_legend(
     Ok(())
 }
 
-/// A mark at a place, filled or in outline.
+/// Draws a mark at a position, filled or in outline.
 fn draw_mark(
     area: &Area<'_>,
     (x, y): (i32, i32),
@@ -234,7 +234,7 @@ fn draw_mark(
     Ok(())
 }
 
-/// The front as the lower left border of all that is beaten.
+/// Returns the front as the lower left border of all configurations that it dominates.
 fn stairs(points: &[&Point]) -> Vec<(f64, f64)> {
     let mut front: Vec<_> = points
         .iter()
@@ -252,7 +252,7 @@ fn stairs(points: &[&Point]) -> Vec<(f64, f64)> {
     line
 }
 
-/// Each name once, in order.
+/// Returns each name once, in order.
 fn names<'a>(all: impl Iterator<Item = &'a String>) -> Vec<String> {
     all.fold(Vec::new(), |mut names, name| {
         if !names.contains(name) {
@@ -262,7 +262,7 @@ fn names<'a>(all: impl Iterator<Item = &'a String>) -> Vec<String> {
     })
 }
 
-/// Hues around the circle, alternately light and dark; black for the textbook.
+/// Returns hues around the circle, alternately light and dark; black for the textbook.
 fn color(family: &str, families: &[String]) -> RGBColor {
     if family == "textbook" {
         return BLACK;
@@ -275,7 +275,7 @@ fn color(family: &str, families: &[String]) -> RGBColor {
     RGBColor(r, g, b)
 }
 
-/// Least and greatest of positive numbers, with room around them.
+/// Returns the least and the greatest of positive numbers, with room around them.
 fn range(values: impl Iterator<Item = f64>, room: f64) -> (f64, f64) {
     let (least, greatest) = values.fold((f64::INFINITY, 0.0f64), |(least, greatest), value| {
         (least.min(value), greatest.max(value))
@@ -283,7 +283,7 @@ fn range(values: impl Iterator<Item = f64>, room: f64) -> (f64, f64) {
     (least / room, greatest * room)
 }
 
-/// Round numbers for a logarithmic axis.
+/// Returns round numbers for a logarithmic axis.
 fn ticks((least, greatest): (f64, f64)) -> Vec<f64> {
     let digits: &[f64] = if greatest / least < 30.0 {
         &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0]
@@ -303,7 +303,7 @@ fn overlap(a: &[i32; 4], b: &[i32; 4]) -> i32 {
     across * down
 }
 
-/// Two significant digits, and a power of ten where that is shorter.
+/// Formats two significant digits, and a power of ten where that is shorter.
 fn short(value: f64) -> String {
     if (1e-3..1e4).contains(&value) {
         let text = format!("{value:.4}");

@@ -1,4 +1,4 @@
-//! The ray caster against closed forms, before anything is measured with it.
+//! Checks the ray caster against closed forms, before anything is measured with it.
 
 use glam::{DVec3, Vec3};
 
@@ -42,8 +42,8 @@ fn shadow_of_a_box_is_a_rectangle() {
     }
 }
 
-/// From a point, a sphere hides the cone whose half-angle has the sine radius / distance. The mesh lies inside the sphere, by
-/// at most the height of its patches.
+/// From a point, a sphere hides the cone whose half-angle has the sine radius / distance. The mesh lies inside the
+/// sphere, by at most the height of its patches.
 fn shadow_of_a_sphere_is_a_cone() {
     let (middle, radius, rings) = (DVec3::new(0.3, 3.0, -0.2), 1.0, 64);
     let light = DVec3::new(1.0, 7.0, 0.5);

@@ -1,4 +1,4 @@
-//! What is compared with what.
+//! Defines the configurations that are compared.
 
 use std::fmt;
 
@@ -7,53 +7,56 @@ use wgpu_shadows::{Bias, DirectionalShadowDescriptor, Filter};
 use super::chart::Mark;
 use super::scene::{Light, SUN_DIAMETER_RADIANS};
 
-/// A technique with its settings, the same for every scene.
+/// Is a technique with its settings, the same for every scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Configuration {
     pub method: Method,
-    /// Texels per side of a sun's map. Spots and the faces of point lights have half of that, as the library's defaults do.
+    /// Is the number of texels per side of a sun's map. Spot lights and the faces of point lights have half of that, as
+    /// the library's defaults do.
     pub map_size: u32,
-    /// Maps cover what the camera sees; else the whole scene.
+    /// States that maps cover what the camera sees; otherwise they cover the whole scene.
     pub fits_camera: bool,
-    /// Cascades of a sun; none for as many as the scene asks for.
+    /// Is the number of cascades of a sun; `None` for as many as the scene needs.
     pub cascades: Option<u32>,
 }
 
-/// How shadows are made.
+/// Selects how shadows are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
     Library {
         filter: Filter,
         bias: Bias,
     },
-    /// The tutorial's last word on suns and spots; its grid of 64 for point lights.
+    /// Uses the tutorial's final version for suns and spot lights, and its grid of 64 for point lights.
     Textbook,
-    /// The tutorial's 20 directions, for point lights.
+    /// Uses the tutorial's 20 directions, for point lights.
     TextbookStar,
 }
 
-/// The manual bias that is tried beside the derived ones: the tutorial's constants in metres, over a depth of four.
+/// Is the manual bias that is measured in addition to the derived ones: the tutorial's constants in metres, over a
+/// depth of four.
 const MANUAL: Bias = Bias::Manual {
     constant: 0.02,
     slope: 0.2,
 };
 
-/// How many configurations to try.
+/// Selects how many configurations to measure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
-    /// Every filter with every bias.
+    /// Measures every filter with every bias.
     Full,
-    /// Every filter with its own bias, two filters with every bias.
+    /// Measures every filter with its own bias, and two filters with every bias.
     Quick,
 }
 
 impl Configuration {
-    /// What the library does unless told otherwise.
+    /// Returns the library's default configuration.
     pub fn shipped_default() -> Self {
         Self::shipped(&DirectionalShadowDescriptor::default())
     }
 
-    /// A descriptor of the library, for a camera, with as many cascades as the scene asks for.
+    /// Returns the configuration of a descriptor of the library, for a camera, with as many cascades as the scene
+    /// needs.
     pub fn shipped(descriptor: &DirectionalShadowDescriptor<'_>) -> Self {
         Self {
             method: Method::Library {
@@ -66,7 +69,7 @@ impl Configuration {
         }
     }
 
-    /// The tutorial, with its map of 1024 texels a side: what times are divided by.
+    /// Is the tutorial with its map of 1024 texels per side, by which times are divided.
     pub const BASELINE: Self = Self {
         method: Method::Textbook,
         map_size: 1024,
@@ -74,7 +77,7 @@ impl Configuration {
         cascades: None,
     };
 
-    /// What the library recommends, cheapest first, by the name it has there.
+    /// Returns what the library recommends, cheapest first, by the name it has there.
     pub fn presets() -> [(&'static str, Self); 3] {
         [
             ("CHEAP", DirectionalShadowDescriptor::CHEAP),
@@ -84,7 +87,7 @@ impl Configuration {
         .map(|(name, descriptor)| (name, Self::shipped(&descriptor)))
     }
 
-    /// The name under which the library recommends it, if it does.
+    /// Returns the name under which the library recommends it, if it does.
     pub fn preset_name(&self) -> Option<&'static str> {
         let presets = Self::presets();
         let own = presets.iter().find(|(_, preset)| preset == self);
@@ -95,7 +98,7 @@ impl Configuration {
         !matches!(self.method, Method::Library { .. })
     }
 
-    /// Does the library derive the bias?
+    /// Returns whether the library derives the bias.
     pub fn has_derived_bias(&self) -> bool {
         matches!(
             self.method,
@@ -106,7 +109,7 @@ impl Configuration {
         )
     }
 
-    /// Texels per side for this kind of light.
+    /// Returns the texels per side for this kind of light.
     pub fn map_size_for(&self, light: &Light) -> u32 {
         match light {
             Light::Sun { .. } => self.map_size,
@@ -114,7 +117,8 @@ impl Configuration {
         }
     }
 
-    /// Filters in direction space are for point lights only, and those with a light's size for lights that have one.
+    /// Returns whether the configuration suits a light: direction-space filters are for point lights only, and those
+    /// with a light size for lights that have one.
     pub fn suits(&self, light: &Light) -> bool {
         let is_point = matches!(light, Light::Point { .. });
         match self.method {
@@ -127,7 +131,7 @@ impl Configuration {
         }
     }
 
-    /// The settings without the map's size.
+    /// Returns the settings without the map's size.
     pub fn series(&self) -> String {
         let coverage = if self.fits_camera { "camera" } else { "scene" };
         match self.method {
@@ -143,7 +147,7 @@ impl Configuration {
         }
     }
 
-    /// The filter whose floor an edge's aliasing is held against.
+    /// Returns the filter with whose floor the aliasing of edges is compared.
     pub fn floor_filter(&self) -> Filter {
         match self.method {
             Method::Library { filter, .. } => filter,
@@ -152,7 +156,7 @@ impl Configuration {
         }
     }
 
-    /// What of the settings a chart shows by colour.
+    /// Returns the part of the settings that a chart shows by colour.
     pub fn family(&self) -> String {
         match self.method {
             Method::Textbook | Method::TextbookStar => "textbook".to_owned(),
@@ -160,7 +164,7 @@ impl Configuration {
         }
     }
 
-    /// What of the settings a chart shows by the shape of the mark.
+    /// Returns the part of the settings that a chart shows by the shape of the mark.
     pub fn mark(&self) -> Mark {
         match self.method {
             Method::Textbook | Method::TextbookStar => Mark::Cross,
@@ -181,7 +185,7 @@ impl fmt::Display for Configuration {
     }
 }
 
-/// Everything to try, the textbook last.
+/// Returns all configurations to measure, the textbook last.
 pub fn all(extent: Extent, map_sizes: &[u32]) -> Vec<Configuration> {
     let mut methods = Vec::new();
     for filter in filters(extent) {
@@ -242,7 +246,7 @@ fn filters(extent: Extent) -> Vec<Filter> {
     filters
 }
 
-/// Name of a filter as in tables: its kind, and its sharpness where that is not 1.
+/// Returns the name of a filter as in tables: its kind, and its sharpness where that is not 1.
 pub fn filter_name(filter: Filter) -> String {
     let kind = match filter {
         Filter::Nearest => "nearest",

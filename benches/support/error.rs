@@ -1,45 +1,47 @@
-//! How far a visibility is from the truth, taken apart by cause.
+//! Measures how far a visibility is from the truth, separated by cause.
 
 use super::pixels::Pixel;
 
-/// Occluders nearer than this many texels along the light's ray make a contact.
+/// Is the distance in texels along the light's ray below which an occluder makes a contact.
 const CONTACT_TEXELS: f64 = 16.0;
 
-/// Errors of one picture. Percentages are shares of the pixels that could have had the error.
+/// Holds the errors of one image. Percentages are shares of the pixels that could have had the error.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Errors {
-    /// Root of the mean squared error of the visibility, over all pixels.
+    /// Is the root of the mean squared error of the visibility, over all pixels.
     pub rmse: f64,
-    /// Pixels on the wrong side of one half.
+    /// Counts the pixels on the wrong side of one half.
     pub misclassified_percent: f64,
-    /// Shadow on lit pixels away from edges: acne.
+    /// Counts shadow on lit pixels away from edges: acne.
     pub false_shadow_percent: f64,
-    /// Light on shadowed pixels away from edges, where the occluder is close: peter-panning.
+    /// Counts light on shadowed pixels away from edges, where the occluder is close: peter-panning.
     pub contact_light_percent: f64,
-    /// How far from its occluder, in texels, a shadowed pixel is still lit.
+    /// Is the largest distance from its occluder, in texels, at which a shadowed pixel is still lit.
     pub contact_reach_texels: f64,
-    /// Light on shadowed pixels away from edges, where the occluder is far: bleeding. Zero for a sound shadow map.
+    /// Counts light on shadowed pixels away from edges, where the occluder is far: bleeding. It is zero for a correct
+    /// shadow map.
     pub deep_light_percent: f64,
-    /// Area on the wrong side of one half per length of edge, in texels.
+    /// Is the area on the wrong side of one half per length of edge, in texels.
     pub edge_aliasing_texels: f64,
-    /// How far edges lie from their place, in texels: above 0 where the shadow has shrunk.
+    /// Is the displacement of edges, in texels: above 0 where the shadow has shrunk.
     pub edge_shift_texels: f64,
-    /// Error over the penumbra of a light with extent; not a number where there is none.
+    /// Is the error over the penumbra of a light with extent; NaN where there is none.
     pub penumbra_rmse: f64,
-    /// Answers that are no number: must be 0.
+    /// Counts the results that are not finite; it must be 0.
     pub non_finite: usize,
 }
 
-/// Pixels within this distance of an edge count as edge: a number of texels, and a length.
+/// Holds the distance from an edge within which pixels count as edge: a number of texels, and a length.
 #[derive(Clone, Copy, Debug)]
 pub struct Band {
     pub texels: f64,
     pub world: f64,
 }
 
-/// Compares what a technique says with the truth.
+/// Compares the visibilities of a technique with the truth.
 ///
-/// `texel_world` is the size of a texel at each pixel, across the light's rays; none where the technique has no map there.
+/// `texel_world` is the size of a texel at each pixel, across the light's rays; `None` where the technique has no map
+/// there.
 pub fn compare(
     pixels: &[Pixel],
     answers: &[f32],
@@ -115,7 +117,7 @@ pub fn compare(
     }
 }
 
-/// A running mean.
+/// Is a running mean.
 #[derive(Clone, Copy, Debug, Default)]
 struct Mean {
     sum: f64,

@@ -1,5 +1,5 @@
-//! The least edge aliasing that a filter can have: straight edges at random places and angles, through the library's own f64
-//! arithmetic.
+//! Computes the least edge aliasing that a filter can have: straight edges at random positions and angles, through the
+//! library's CPU reference.
 
 use std::f64::consts::TAU;
 
@@ -13,7 +13,7 @@ const SIDE: u32 = 24;
 const EDGES: u32 = 150;
 const PLACES: u32 = 200;
 
-/// The floors of a set of filters.
+/// Holds the floors of a set of filters.
 #[derive(Clone, Debug, Default)]
 pub struct Floors(Vec<(Filter, f64)>);
 
@@ -28,18 +28,18 @@ impl Floors {
         floors
     }
 
-    /// Least edge aliasing of a filter in the set.
+    /// Returns the least edge aliasing of a filter in the set.
     pub fn get(&self, filter: Filter) -> Option<f64> {
         let known = self.0.iter().find(|(other, _)| *other == filter);
         known.map(|(_, texels)| *texels)
     }
 }
 
-/// Area on the wrong side of one half per length of a straight edge, in texels, for a map whose texels are hidden where their
-/// middle is.
+/// Returns the area on the wrong side of one half per length of a straight edge, in texels, for a map whose texels are
+/// hidden where their middle is.
 fn edge_aliasing_texels(filter: Filter) -> f64 {
     let mut random = Random::new(21);
-    // As far to either side as the filter's answer can differ from the truth.
+    // The samples extend as far to either side as the filter's result can differ from the truth.
     let reach = filter.reach_texels() + 0.5;
     let mut wrong = 0u32;
     for _ in 0..EDGES {
@@ -50,7 +50,7 @@ fn edge_aliasing_texels(filter: Filter) -> f64 {
         let depths: Vec<f32> = (0..SIDE * SIDE)
             .map(|texel| {
                 let center = DVec2::new(f64::from(texel % SIDE), f64::from(texel / SIDE)) + 0.5;
-                // Reversed depth: what is nearer to the light is greater.
+                // Depth is reversed: what is nearer to the light is greater.
                 if hidden(center) { 1.0 } else { 0.0 }
             })
             .collect();

@@ -1,18 +1,19 @@
-//! A device without a window, and what it answers.
+//! Provides a device without a window, and reads its results.
 
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
-/// Adapter, device and queue.
+/// Holds adapter, device and queue.
 pub struct Gpu {
     pub adapter: wgpu::AdapterInfo,
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
-    /// Timestamps can be written between passes.
+    /// States that timestamps can be written between passes.
     pub has_timestamps: bool,
 }
 
 impl Gpu {
-    /// The first Vulkan adapter, a software one where there is nothing better; any other backend where there is no Vulkan.
+    /// Uses the first Vulkan adapter, a software one where there is nothing better, and any other backend where there
+    /// is no Vulkan.
     pub fn new() -> Result<Self, String> {
         let backends = [wgpu::Backends::VULKAN, wgpu::Backends::PRIMARY];
         let adapter = backends.iter().find_map(|&backends| {
@@ -42,7 +43,7 @@ impl Gpu {
         })
     }
 
-    /// "name (kind, driver) over backend".
+    /// Returns "name (kind, driver) over backend".
     pub fn describe(&self) -> String {
         let info = &self.adapter;
         format!(
@@ -51,7 +52,7 @@ impl Gpu {
         )
     }
 
-    /// A software rasteriser, whose milliseconds say nothing about a GPU's.
+    /// Returns whether it is a software rasterizer, whose milliseconds say nothing about a GPU's.
     pub fn is_software(&self) -> bool {
         self.adapter.device_type == wgpu::DeviceType::Cpu
     }
@@ -60,7 +61,7 @@ impl Gpu {
         self.device.create_command_encoder(&Default::default())
     }
 
-    /// Submits what `encoder` holds and waits until the device has done it.
+    /// Submits the commands of `encoder` and waits until the device has executed them.
     pub fn submit(&self, encoder: wgpu::CommandEncoder) {
         self.queue.submit([encoder.finish()]);
         self.wait();
@@ -72,7 +73,7 @@ impl Gpu {
             .expect("the device finishes its work");
     }
 
-    /// A buffer that holds `contents`.
+    /// Creates a buffer that contains `contents`.
     pub fn buffer(
         &self,
         contents: &[impl bytemuck::NoUninit],
@@ -85,7 +86,7 @@ impl Gpu {
         })
     }
 
-    /// An empty buffer of `bytes`.
+    /// Creates an empty buffer of `bytes`.
     pub fn empty_buffer(&self, bytes: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
         self.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
@@ -95,7 +96,7 @@ impl Gpu {
         })
     }
 
-    /// A shader module from WGSL.
+    /// Creates a shader module from WGSL.
     pub fn shader(&self, source: &str) -> wgpu::ShaderModule {
         self.device
             .create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -104,7 +105,7 @@ impl Gpu {
             })
     }
 
-    /// The contents of a buffer created with `COPY_SRC`.
+    /// Returns the contents of a buffer created with `COPY_SRC`.
     pub fn read<T: bytemuck::Pod>(&self, buffer: &wgpu::Buffer) -> Vec<T> {
         let readable = self.empty_buffer(
             buffer.size(),

@@ -1,4 +1,4 @@
-//! The library as a technique.
+//! Implements the library as a technique.
 
 use std::error::Error;
 
@@ -15,19 +15,19 @@ use super::gpu::Gpu;
 use super::scene::{Light, Scene};
 use super::technique::{Cost, Footprint, LIGHT_NAME, Lookup, Technique};
 
-/// The library's choices.
+/// Holds the library's settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LibraryOptions {
     pub filter: Filter,
     pub bias: Bias,
     pub map_size: u32,
-    /// Cover what the camera sees, or the bounds of the scene.
+    /// States that maps cover what the camera sees; otherwise they cover the bounds of the scene.
     pub fits_camera: bool,
-    /// Of a sun; other lights ignore it.
+    /// Is the number of cascades of a sun; other lights ignore it.
     pub cascades: u32,
 }
 
-/// The meshes of a scene as casters.
+/// Holds the meshes of a scene as casters.
 pub struct SceneCasters {
     meshes: Vec<MeshCaster>,
 }
@@ -83,7 +83,7 @@ enum Shadow {
     Point(Box<OmniShadow>),
 }
 
-/// One light of the library, with its bindings.
+/// Holds one light of the library, with its bindings.
 pub struct LibraryTechnique<'a> {
     scene: &'a Scene,
     casters: Vec<&'a dyn ShadowCaster>,
@@ -271,7 +271,7 @@ impl Technique for LibraryTechnique<'_> {
     }
 
     fn band_world(&self) -> f64 {
-        // The corners of the cube of offsets, which grows up to twofold with the distance from the viewer.
+        // These are the corners of the cube of offsets, which grows up to twofold with the distance from the camera.
         2.0 * 3f64.sqrt() * f64::from(self.options.filter.radius_world())
     }
 
@@ -280,7 +280,7 @@ impl Technique for LibraryTechnique<'_> {
     }
 }
 
-/// Texels that one lookup's weights are made of.
+/// Returns the number of texels from which the weights of one lookup are made.
 fn texels_touched(filter: Filter) -> u32 {
     match filter {
         Filter::Nearest => 1,
@@ -289,9 +289,9 @@ fn texels_touched(filter: Filter) -> u32 {
         Filter::Tent3 { .. } => 16,
         Filter::Tent5 { .. } => 36,
         Filter::Tent7 { .. } => 64,
-        // Four texels a gather.
+        // There are four texels per gather.
         Filter::Pcss { .. } | Filter::PcssRotated { .. } => 4 * filter.texture_instructions(),
-        // One texel a sample.
+        // There is one texel per sample.
         _ => filter.texture_instructions(),
     }
 }

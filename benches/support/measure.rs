@@ -1,4 +1,4 @@
-//! One scene, every configuration.
+//! Measures every configuration in one scene.
 
 use std::error::Error;
 use std::path::Path;
@@ -19,21 +19,21 @@ use super::textbook::flat::FlatTechnique;
 use super::textbook::meshes::WorldMeshes;
 use super::truth::World;
 
-/// What one configuration did in one scene.
+/// Holds the results of one configuration in one scene.
 #[derive(Clone, Debug)]
 pub struct Sample {
     pub scene: &'static str,
     pub is_soft: bool,
     pub configuration: Configuration,
     pub errors: Errors,
-    /// The least edge aliasing of the configuration's filter, in texels; not a number where it is not known.
+    /// Is the least edge aliasing of the configuration's filter, in texels; NaN where it is not known.
     pub edge_floor_texels: f64,
     pub cost: Cost,
-    /// Times as multiples of the textbook's, run by run.
+    /// Holds times as multiples of the textbook's, run by run.
     pub ratios: Ratios,
 }
 
-/// Time divided by that of [`Configuration::BASELINE`], run right before; not numbers where nothing was timed.
+/// Holds times divided by that of [`Configuration::BASELINE`], run right before; NaN where nothing was timed.
 #[derive(Clone, Copy, Debug)]
 pub struct Ratios {
     pub maps: Spread,
@@ -49,13 +49,13 @@ impl Ratios {
     };
 }
 
-/// The textbook, warmed up, and how often each is run beside it.
+/// Holds the textbook, warmed up, and how often each technique is run next to it.
 pub struct Stopwatch<'a> {
     baseline: Box<dyn Technique + 'a>,
     pub repeats: u32,
 }
 
-/// A scene on the device, with the truth about what its camera sees: everything that its measurements share.
+/// Holds a scene on the device, with the truth about what its camera sees: everything that its measurements share.
 pub struct Subject<'a> {
     gpu: &'a Gpu,
     scene: &'a Scene,
@@ -70,7 +70,7 @@ impl<'a> Subject<'a> {
     /// Casts the rays of the truth.
     ///
     /// # Errors
-    /// Where the camera sees nothing that faces the light.
+    /// Returns an error where the camera sees nothing that faces the light.
     pub fn new(prober: &Prober<'a>, scene: &'a Scene, effort: &Effort) -> Result<Self, String> {
         let gpu = prober.gpu();
         let world = World::new(scene);
@@ -93,12 +93,12 @@ impl<'a> Subject<'a> {
         })
     }
 
-    /// What is asked: the pixels that face the light.
+    /// Returns the pixels that are sampled: those that face the light.
     pub fn pixels(&self) -> &[Pixel] {
         &self.pixels
     }
 
-    /// Errors and counts of one configuration, and times where there is a clock for them.
+    /// Returns errors and counts of one configuration, and times where there is a clock for them.
     pub fn measure(
         &self,
         prober: &mut Prober<'_>,
@@ -107,7 +107,7 @@ impl<'a> Subject<'a> {
         stopwatch: Option<&mut Stopwatch<'_>>,
     ) -> Result<Sample, Box<dyn Error>> {
         let mut technique = self.technique(configuration)?;
-        // The first run compiles and allocates, and its answers are as good as any.
+        // The first run compiles and allocates, and its results are as good as any.
         prober.run(technique.as_mut(), &self.questions)?;
         let answers = prober.answers(&self.questions);
         let footprint = technique.footprint();
@@ -134,7 +134,7 @@ impl<'a> Subject<'a> {
         })
     }
 
-    /// Times of one configuration, each next to one of the textbook's.
+    /// Returns the times of one configuration, each next to one of the textbook's.
     pub fn time(
         &self,
         prober: &mut Prober<'_>,
@@ -146,7 +146,7 @@ impl<'a> Subject<'a> {
         self.ratios(prober, technique.as_mut(), stopwatch)
     }
 
-    /// A clock that repeats everything this often.
+    /// Returns a clock that repeats everything this often.
     pub fn stopwatch(
         &self,
         prober: &mut Prober<'_>,
@@ -157,7 +157,7 @@ impl<'a> Subject<'a> {
         Ok(Stopwatch { baseline, repeats })
     }
 
-    /// Times of a technique that has run before.
+    /// Returns the times of a technique that has run before.
     fn ratios(
         &self,
         prober: &mut Prober<'_>,
@@ -205,7 +205,7 @@ impl<'a> Subject<'a> {
         })
     }
 
-    /// Writes pictures of the scene side by side: the truth, then what each configuration says.
+    /// Writes images of the scene side by side: the truth, then the result of each configuration.
     pub fn write_picture(
         &self,
         prober: &mut Prober<'_>,

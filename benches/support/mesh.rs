@@ -1,9 +1,9 @@
-//! Generated triangle meshes.
+//! Generates triangle meshes.
 
 use glam::{DVec3, Mat3, Vec3};
 use wgpu_shadows::Aabb;
 
-/// An indexed triangle list in render space; outward faces are counter-clockwise.
+/// Is an indexed triangle list in render space; outward faces are counter-clockwise.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
     pub positions: Vec<Vec3>,
@@ -11,7 +11,7 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// A closed box.
+    /// Returns a closed box.
     pub fn cuboid(min: Vec3, max: Vec3) -> Self {
         let positions = (0..8)
             .map(|corner| {
@@ -19,7 +19,7 @@ impl Mesh {
                 Vec3::select(glam::BVec3::from_array(takes_max), max, min)
             })
             .collect();
-        // Each row: the four corners of a face, counter-clockwise from outside.
+        // Each row lists the four corners of a face, counter-clockwise from outside.
         let faces: [[u32; 4]; 6] = [
             [0, 4, 6, 2],
             [1, 3, 7, 5],
@@ -35,7 +35,7 @@ impl Mesh {
         Self { positions, indices }
     }
 
-    /// A closed box that stands at `foot` (the middle of its lower face) and is turned about its upright axis.
+    /// Returns a closed box that stands at `foot` (the middle of its lower face) and is rotated about its upright axis.
     pub fn standing_box(foot: Vec3, size: Vec3, turn_radians: f32) -> Self {
         let half = Vec3::new(size.x * 0.5, 0.0, size.z * 0.5);
         let mut mesh = Self::cuboid(-half, half.with_y(size.y));
@@ -46,7 +46,7 @@ impl Mesh {
         mesh
     }
 
-    /// A closed rod of `sides` sides between two places.
+    /// Returns a closed rod of `sides` sides between two positions.
     pub fn rod(from: Vec3, to: Vec3, radius: f32, sides: u32) -> Self {
         let (across, along) = (to - from).normalize().any_orthonormal_pair();
         let mut mesh = Self::default();
@@ -68,7 +68,7 @@ impl Mesh {
         mesh
     }
 
-    /// A flat sheet of two triangles.
+    /// Returns a flat sheet of two triangles.
     pub fn sheet(corner: Vec3, u: Vec3, v: Vec3) -> Self {
         Self {
             positions: vec![corner, corner + u, corner + u + v, corner + v],
@@ -76,7 +76,7 @@ impl Mesh {
         }
     }
 
-    /// A level square at height `y`, from `-half` to `half`, that faces up.
+    /// Returns a level square at height `y`, from `-half` to `half`, that faces up.
     pub fn ground(y: f32, half: f32) -> Self {
         Self::sheet(
             Vec3::new(-half, y, -half),
@@ -85,7 +85,7 @@ impl Mesh {
         )
     }
 
-    /// A closed sphere of `rings` by `2 * rings` patches, its corners on the true sphere.
+    /// Returns a closed sphere of `rings` by `2 * rings` patches, with its corners on the true sphere.
     pub fn sphere(center: Vec3, radius: f32, rings: u32) -> Self {
         let columns = 2 * rings;
         let mut mesh = Self::default();
@@ -117,7 +117,7 @@ impl Mesh {
         mesh
     }
 
-    /// The surface `y = height(x, z)` over a square from `-half` to `half`, in `cells` by `cells` squares.
+    /// Returns the surface `y = height(x, z)` over a square from `-half` to `half`, in `cells` by `cells` squares.
     pub fn terrain(half: f32, cells: u32, height: impl Fn(f32, f32) -> f32) -> Self {
         let mut mesh = Self::default();
         let place = |index: u32| 2.0 * half * index as f32 / cells as f32 - half;
@@ -138,7 +138,7 @@ impl Mesh {
         mesh
     }
 
-    /// This mesh and another as one.
+    /// Returns this mesh and another as one.
     pub fn joined(mut self, other: Self) -> Self {
         let first = self.positions.len() as u32;
         self.positions.extend(other.positions);
@@ -151,7 +151,7 @@ impl Mesh {
         Aabb::from_points(self.positions.iter().copied())
     }
 
-    /// Corners of the triangles, exactly as the device gets them.
+    /// Returns the corners of the triangles, exactly as the device gets them.
     pub fn triangles(&self) -> impl Iterator<Item = [DVec3; 3]> {
         self.indices.chunks_exact(3).map(|triangle| {
             [0, 1, 2].map(|corner| self.positions[triangle[corner] as usize].as_dvec3())

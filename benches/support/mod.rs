@@ -1,14 +1,15 @@
-//! What measures shadows: scenes, the truth about them, techniques with their settings, and what they cost and how far they err.
+//! Measures shadows: contains scenes, the truth about them, techniques with their settings, their costs and their
+//! errors.
 //!
 //! ```text
-//! scene.rs          what is measured on; scenes.rs: the generated ones; mesh.rs, camera.rs
+//! scene.rs          what is measured; scenes.rs: the generated ones; mesh.rs, camera.rs
 //! truth.rs          the ray caster, checked by closed_form.rs
 //! pixels.rs         what a camera sees, with the truth; edge.rs: how far it is from a shadow's edge
 //! technique.rs      what is compared: library.rs, textbook/
-//! configuration.rs  with which settings
-//! measure.rs        runs them; probe.rs: asks and times; error.rs: compares; floor.rs: what no filter can beat
+//! configuration.rs  the settings
+//! measure.rs        runs the techniques; probe.rs: samples and times; error.rs: compares; floor.rs: the least error of a filter
 //! overall.rs        means over scenes, and the judgement; pareto.rs
-//! report.rs         tables; chart.rs: charts; picture.rs: truth and answers side by side
+//! report.rs         tables; chart.rs: charts; picture.rs: truth and results side by side
 //! gpu.rs, parallel.rs, random.rs, statistics.rs
 //! ```
 

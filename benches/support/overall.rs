@@ -1,30 +1,30 @@
-//! Means over the scenes, the Pareto front, and whether the library's default lies on it.
+//! Computes means over the scenes, the Pareto front, and whether the library's default is on it.
 
 use super::configuration::Configuration;
 use super::measure::Sample;
 use super::pareto;
 
-/// One configuration over all scenes with hard shadows.
+/// Holds the results of one configuration over all scenes with hard shadows.
 #[derive(Clone, Debug)]
 pub struct Overall {
     pub configuration: Configuration,
-    /// Means over the scenes.
+    /// Is the mean over the scenes.
     pub rmse: f64,
     pub misclassified_percent: f64,
     pub false_shadow_percent: f64,
     pub false_light_percent: f64,
-    /// Mean texture instructions per shaded pixel.
+    /// Is the mean of the texture instructions per shaded pixel.
     pub texture_instructions: f64,
-    /// Mean texels allocated.
+    /// Is the mean of the texels allocated.
     pub texels: f64,
-    /// Mean over the scenes of the work per frame.
+    /// Is the mean over the scenes of the work per frame.
     pub cost: f64,
-    /// Geometric mean over the scenes of the time as a multiple of the textbook's.
+    /// Is the geometric mean over the scenes of the time as a multiple of the textbook's.
     pub time_ratio: f64,
     pub is_on_front: bool,
 }
 
-/// One entry per configuration that ran in every scene with hard shadows.
+/// Returns one entry per configuration that ran in every scene with hard shadows.
 pub fn of(samples: &[Sample]) -> Vec<Overall> {
     let hard: Vec<&Sample> = samples.iter().filter(|sample| !sample.is_soft).collect();
     let mut scenes: Vec<_> = hard.iter().map(|sample| sample.scene).collect();
@@ -77,7 +77,8 @@ fn mean(configuration: Configuration, samples: &[&Sample]) -> Overall {
     }
 }
 
-/// Is a configuration on the front of work per frame against rmse? The sentence names what beats it.
+/// Returns whether a configuration is on the front of work per frame against rmse. The sentence names what dominates
+/// it.
 pub fn judge(entries: &[Overall], configuration: &Configuration) -> Result<String, String> {
     let own = find(entries, configuration)?;
     let front = "on the Pareto front of work per frame against rmse";
@@ -93,7 +94,7 @@ pub fn judge(entries: &[Overall], configuration: &Configuration) -> Result<Strin
     }
 }
 
-/// The same question with other costs, one sentence each: what they say beside the judgement.
+/// Answers the same question for other costs, with one sentence each, in addition to the judgement.
 pub fn other_views(entries: &[Overall]) -> Result<Vec<String>, String> {
     let own = find(entries, &Configuration::shipped_default())?;
     let answer = |costs: &str, beaten: Option<&Overall>| match beaten {
@@ -132,7 +133,7 @@ fn find<'a>(entries: &'a [Overall], configuration: &Configuration) -> Result<&'a
         .ok_or_else(|| format!("{configuration} was not measured in every scene"))
 }
 
-/// The closest to the truth of all that beat `own` in these costs.
+/// Returns the closest to the truth of all that dominate `own` in these costs.
 fn beaten_by<'a, const N: usize>(
     entries: &'a [Overall],
     own: &Overall,

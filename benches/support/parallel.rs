@@ -1,4 +1,4 @@
-//! Work on all cores, in order, with a bar.
+//! Runs work on all cores, in order, with a progress bar.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -7,7 +7,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 const BLOCK: usize = 128;
 
-/// A bar for `count` steps of what `label` names, on standard error; silent where that is no terminal.
+/// Returns a bar for `count` steps of what `label` names, on standard error; it is silent where that is not a terminal.
 pub fn bar(label: &str, count: usize) -> ProgressBar {
     let style = ProgressStyle::with_template("{msg:32} {bar:40} {pos}/{len} {eta}")
         .expect("a valid template");
@@ -16,7 +16,7 @@ pub fn bar(label: &str, count: usize) -> ProgressBar {
         .with_message(label.to_owned())
 }
 
-/// `make` of every item, on all cores, in the order of the items.
+/// Returns `make` of every item, computed on all cores, in the order of the items.
 pub fn map<I: Sync, T: Send>(label: &str, items: &[I], make: impl Fn(&I) -> T + Sync) -> Vec<T> {
     let bar = bar(label, items.len());
     let next = AtomicUsize::new(0);

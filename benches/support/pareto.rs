@@ -1,7 +1,7 @@
-//! What nothing else beats.
+//! Finds what nothing else dominates.
 
-/// For each entry of costs, smaller being better in all of them: is it on the Pareto front, that is, is no other entry at most
-/// as large in every cost and smaller in one?
+/// Returns for each entry of costs, smaller being better in all of them, whether it is on the Pareto front: whether no
+/// other entry is at most as large in every cost and smaller in one.
 pub fn front<const N: usize>(entries: &[[f64; N]]) -> Vec<bool> {
     entries
         .iter()
@@ -9,7 +9,7 @@ pub fn front<const N: usize>(entries: &[[f64; N]]) -> Vec<bool> {
         .collect()
 }
 
-/// Is `better` at most as large in every cost, and smaller in one?
+/// Returns whether `better` is at most as large in every cost, and smaller in one.
 pub fn dominates<const N: usize>(better: &[f64; N], worse: &[f64; N]) -> bool {
     let mut pairs = better.iter().zip(worse);
     pairs.clone().all(|(a, b)| a <= b) && pairs.any(|(a, b)| a < b)

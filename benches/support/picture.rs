@@ -1,4 +1,4 @@
-//! Pictures of visibilities, for looking at what the figures say.
+//! Writes images of visibilities, to see what the figures mean.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use image::{GrayImage, Luma};
 
 use super::pixels::Pixel;
 
-/// Writes pictures of `size` side by side: visibility as grey, and one dark grey where nothing is asked.
+/// Writes images of `size` side by side: visibility as grey, and one dark grey where nothing was sampled.
 pub fn write(
     path: &Path,
     [width, height]: [u32; 2],
@@ -25,5 +25,5 @@ pub fn write(
     picture.save(path)
 }
 
-/// Grey of pixels without a surface that faces the light.
+/// Is the grey of pixels without a surface that faces the light.
 const UNASKED: u8 = 90;

@@ -1,4 +1,4 @@
-//! What a camera sees, pixel by pixel, with the truth about each.
+//! Finds what a camera sees, pixel by pixel, with the truth about each.
 
 use glam::DVec3;
 
@@ -8,36 +8,37 @@ use super::parallel;
 use super::scene::Scene;
 use super::truth::World;
 
-/// A visible surface point that faces the light and lies within its reach.
+/// Is a visible surface point that faces the light and lies within its reach.
 #[derive(Clone, Copy, Debug)]
 pub struct Pixel {
-    /// Place in the picture, row by row from the top.
+    /// Is its index in the image, row by row from the top.
     pub index: u32,
-    /// In render space.
+    /// Is in render space.
     pub position: DVec3,
-    /// Geometric, toward the viewer.
+    /// Is the geometric normal, toward the camera.
     pub normal: DVec3,
-    /// True visibility of the light, in [0, 1].
+    /// Is the true visibility of the light, in [0, 1].
     pub visibility: f64,
-    /// Distance toward the light of what hides its middle; none where that is seen.
+    /// Is the distance toward the light of what hides its middle; `None` where that is seen.
     pub occluder_world: Option<f64>,
-    /// Distance across the light's rays to the nearest place on the tangent plane where the middle of the light turns from
-    /// seen to hidden or back; infinite where that is farther than any filter reaches.
+    /// Is the distance across the light's rays to the nearest position on the tangent plane where the middle of the
+    /// light turns from seen to hidden or back; infinite where that is farther than any filter reaches.
     pub edge_world: f64,
 }
 
-/// How much work the truth may be.
+/// Limits the work for the truth.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// Width and height of the picture.
+    /// Is the width and height of the image.
     pub picture: [u32; 2],
-    /// Points of a light with extent, per side of their square.
+    /// Is the number of points of a light with extent, per side of their square.
     pub disc_side: u32,
-    /// Rays per ring in the search for edges; none are looked for with 0, and errors at edges then count as acne and leaks.
+    /// Is the number of rays per ring in the search for edges; with 0 none are searched for, and errors at edges then
+    /// count as acne and leaks.
     pub ring_rays: u32,
 }
 
-/// The pixels that count, row by row: those where a surface faces the light.
+/// Returns the pixels that count, row by row: those where a surface faces the light.
 pub fn visible(scene: &Scene, world: &World, effort: &Effort) -> Vec<Pixel> {
     let rays: Vec<_> = (0..)
         .zip(camera::pixel_rays(&scene.camera, effort.picture))

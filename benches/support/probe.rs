@@ -1,4 +1,4 @@
-//! Asks a technique for the visibility at each pixel, and how long that took.
+//! Samples a technique for the visibility at each pixel, and measures how long that takes.
 
 use std::collections::HashMap;
 use std::time::Instant;
@@ -9,7 +9,7 @@ use wgpu_shadows::ShadowError;
 use super::gpu::Gpu;
 use super::technique::{Technique, asked_position};
 
-/// The pixels of a scene on the device, and room for the answers.
+/// Holds the pixels of a scene on the device, and a buffer for the results.
 pub struct Questions {
     count: u32,
     answers: wgpu::Buffer,
@@ -17,7 +17,7 @@ pub struct Questions {
     in_world_space: wgpu::BindGroup,
 }
 
-/// Mirror of `Point` in the shader.
+/// Mirrors `Point` in the shader.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct Point {
@@ -27,7 +27,8 @@ struct Point {
     pad_normal: f32,
 }
 
-/// Seconds on the device's own clock, or on the wall's where the device has none. Only ratios of these mean anything.
+/// Holds seconds on the device's own clock, or on the wall's where the device has none. Only ratios of these are
+/// meaningful.
 #[derive(Clone, Copy, Debug)]
 pub struct Times {
     pub maps: f64,
@@ -40,7 +41,7 @@ impl Times {
     }
 }
 
-/// Compute pipelines in place of an engine's shading pass.
+/// Holds compute pipelines that replace an engine's shading pass.
 pub struct Prober<'a> {
     gpu: &'a Gpu,
     questions_layout: wgpu::BindGroupLayout,
@@ -94,7 +95,7 @@ impl<'a> Prober<'a> {
         self.gpu
     }
 
-    /// Puts places (position and normal in a render space that begins at `origin`) on the device.
+    /// Uploads points (position and normal in a render space that begins at `origin`) to the device.
     pub fn questions(&self, places: &[(DVec3, DVec3)], origin: DVec3) -> Questions {
         let answers = self.gpu.empty_buffer(
             4 * places.len() as u64,
@@ -136,7 +137,7 @@ impl<'a> Prober<'a> {
         }
     }
 
-    /// Fills the maps and looks every pixel up.
+    /// Fills the maps and samples every pixel.
     pub fn run(
         &mut self,
         technique: &mut dyn Technique,
@@ -171,12 +172,12 @@ impl<'a> Prober<'a> {
         })
     }
 
-    /// The answers of the last run.
+    /// Returns the results of the last run.
     pub fn answers(&self, questions: &Questions) -> Vec<f32> {
         self.gpu.read(&questions.answers)
     }
 
-    /// The pipeline for a technique's WGSL; equal texts have equal layouts.
+    /// Returns the pipeline for a technique's WGSL; equal texts have equal layouts.
     fn pipeline(&mut self, technique: &dyn Technique) -> wgpu::ComputePipeline {
         let lookup = technique.lookup();
         if let Some(pipeline) = self.pipelines.get(lookup.wgsl) {

@@ -1,4 +1,4 @@
-// One lookup per pixel. `shadow_light` is what is put in front of this text.
+// Samples the light once per pixel. The text before this one defines `shadow_light`.
 
 struct Point {
     position: vec3<f32>,

@@ -1,6 +1,6 @@
-//! Deterministic numbers.
+//! Provides deterministic numbers.
 
-/// SplitMix64 (Steele, Lea and Flood 2014): equal seeds give equal numbers on every machine.
+/// Is SplitMix64 (Steele, Lea and Flood 2014): equal seeds give equal numbers on every machine.
 pub struct Random(u64);
 
 impl Random {
@@ -8,7 +8,7 @@ impl Random {
         Self(seed)
     }
 
-    /// Uniform in [0, 1).
+    /// Returns a number that is uniform in [0, 1).
     pub fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut bits = self.0;
@@ -17,7 +17,7 @@ impl Random {
         ((bits ^ (bits >> 31)) >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// Uniform in `from..to`.
+    /// Returns a number that is uniform in `from..to`.
     pub fn between(&mut self, from: f32, to: f32) -> f32 {
         from + (to - from) * self.unit() as f32
     }

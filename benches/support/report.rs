@@ -1,4 +1,4 @@
-//! Tables on standard output, and every number in files.
+//! Prints tables on standard output, and writes every number to files.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -81,7 +81,7 @@ pub fn print_scene(samples: &[Sample], all_rows: bool) {
     }
 }
 
-/// Which samples of one scene are on its front.
+/// Returns which samples of one scene are on its front.
 pub fn front(samples: &[Sample]) -> Vec<bool> {
     let costs: Vec<_> = samples
         .iter()
@@ -122,7 +122,7 @@ pub fn print_overall(entries: &[Overall]) {
     }
 }
 
-/// Every number of every sample.
+/// Writes every number of every sample.
 pub fn write_samples(path: &Path, samples: &[Sample]) -> io::Result<()> {
     let mut text = String::from(
         "scene,configuration,map_size,fits_camera,rmse,misclassified_percent,false_shadow_percent,contact_light_percent,\
@@ -174,7 +174,7 @@ pub fn write_samples(path: &Path, samples: &[Sample]) -> io::Result<()> {
     fs::write(path, text)
 }
 
-/// The overall table.
+/// Writes the overall table.
 pub fn write_overall(path: &Path, entries: &[Overall]) -> io::Result<()> {
     let mut text = String::from(
         "configuration,map_size,fits_camera,rmse,misclassified_percent,false_shadow_percent,false_light_percent,\

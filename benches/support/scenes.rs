@@ -1,4 +1,4 @@
-//! The scenes: small, generated, each about one thing that shadow maps find hard.
+//! Defines the scenes: small and generated, each about one thing that is hard for shadow maps.
 
 use glam::{DVec3, Vec3};
 
@@ -7,10 +7,10 @@ use super::mesh::Mesh;
 use super::random::Random;
 use super::scene::{Light, SUN_DIAMETER_RADIANS, Scene};
 
-/// Field of view of most cameras, from the lower to the upper edge of the picture.
+/// Is the field of view of most cameras, from the lower to the upper edge of the image.
 const FOV_Y_RADIANS: f32 = 0.9;
 
-/// All scenes, in the order of the tables.
+/// Returns all scenes, in the order of the tables.
 pub fn all() -> Vec<Scene> {
     vec![
         boxes("boxes", DVec3::ZERO),
@@ -27,7 +27,7 @@ pub fn all() -> Vec<Scene> {
     ]
 }
 
-/// Boxes on level ground under an afternoon sun; far from the world's origin where `origin` says so.
+/// Returns boxes on level ground under an afternoon sun, far from the world's origin where `origin` is.
 pub fn boxes(name: &'static str, origin: DVec3) -> Scene {
     let mut random = Random::new(1);
     let mut meshes = vec![Mesh::ground(0.0, 25.0)];
@@ -58,7 +58,7 @@ pub fn boxes(name: &'static str, origin: DVec3) -> Scene {
     }
 }
 
-/// Rolling ground and spheres: every texel spans a range of slopes.
+/// Returns rolling ground and spheres: every texel spans a range of slopes.
 fn curved() -> Scene {
     let height = |x: f32, z: f32| 1.4 * (0.35 * x).sin() * (0.28 * z + 0.5).cos() + 0.02 * x;
     let mut random = Random::new(2);
@@ -83,7 +83,7 @@ fn curved() -> Scene {
     }
 }
 
-/// Fences of posts and rails, and wires overhead: shadows about as wide as a texel.
+/// Returns fences of posts and rails, and wires overhead: shadows about as wide as a texel.
 fn thin() -> Scene {
     let mut meshes = vec![Mesh::ground(0.0, 20.0)];
     for row in 0..3 {
@@ -125,7 +125,7 @@ fn thin() -> Scene {
     }
 }
 
-/// Boxes and plates of one to eight centimetres that lie on the ground: too much bias takes their shadows away.
+/// Returns boxes and plates of one to eight centimetres that lie on the ground: too much bias removes their shadows.
 fn contact() -> Scene {
     let mut random = Random::new(4);
     let mut meshes = vec![Mesh::ground(0.0, 12.0)];
@@ -157,7 +157,7 @@ fn contact() -> Scene {
     }
 }
 
-/// A sun four degrees above the horizon.
+/// Returns a scene under a sun four degrees above the horizon.
 fn grazing() -> Scene {
     let mut random = Random::new(5);
     let mut meshes = vec![Mesh::ground(0.0, 25.0)];
@@ -186,7 +186,7 @@ fn grazing() -> Scene {
     }
 }
 
-/// A few hundred houses, seen from a street to the horizon, with three cascades.
+/// Returns a few hundred houses, seen from a street to the horizon, with three cascades.
 fn town() -> Scene {
     let mut random = Random::new(6);
     let mut meshes = vec![Mesh::ground(0.0, 300.0)];
@@ -219,7 +219,7 @@ fn town() -> Scene {
     }
 }
 
-/// Open sheets, some of them a few centimetres apart: sails, leaves and cloths without an inside.
+/// Returns open sheets, some of them a few centimetres apart: sails, leaves and cloths without an inside.
 fn sheets() -> Scene {
     let mut random = Random::new(7);
     let mut meshes = vec![Mesh::ground(0.0, 15.0)];
@@ -254,7 +254,7 @@ fn sheets() -> Scene {
     }
 }
 
-/// A spot light over a table of boxes.
+/// Returns a spot light over a table of boxes.
 fn spot() -> Scene {
     let mut random = Random::new(8);
     let mut meshes = vec![Mesh::ground(0.0, 8.0)];
@@ -287,7 +287,7 @@ fn spot() -> Scene {
     }
 }
 
-/// A lamp in a room with columns: all six faces of the cube receive.
+/// Returns a point light in a room with columns: all six faces of the cube receive.
 fn point() -> Scene {
     let mut meshes = vec![Mesh::cuboid(
         Vec3::new(-5.0, 0.0, -5.0),
@@ -315,7 +315,8 @@ fn point() -> Scene {
     }
 }
 
-/// Masts and boxes under a sun of its true width, about half a degree: what a hard map misses of the penumbra.
+/// Returns masts and boxes under a sun of its true width, about half a degree, which shows what a hard map misses of
+/// the penumbra.
 fn soft() -> Scene {
     let mut random = Random::new(9);
     let mut meshes = vec![Mesh::ground(0.0, 25.0)];

@@ -1,6 +1,6 @@
-//! Medians and quartiles.
+//! Computes medians and quartiles.
 
-/// Median and middle half of a set of numbers.
+/// Holds the median and the middle half of a set of numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Spread {
     pub lower_quartile: f64,
@@ -9,14 +9,14 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Of no numbers.
+    /// Is the result for an empty set.
     pub const UNKNOWN: Self = Self {
         lower_quartile: f64::NAN,
         median: f64::NAN,
         upper_quartile: f64::NAN,
     };
 
-    /// Of at least one number.
+    /// Returns the statistics of at least one number.
     pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
         let mut sorted: Vec<f64> = values.into_iter().collect();
         sorted.sort_by(f64::total_cmp);

@@ -1,47 +1,47 @@
-//! What is compared: anything that fills maps and answers `shadow_light(position, normal)`.
+//! Defines what is compared: anything that fills maps and provides `shadow_light(position, normal)`.
 
 use glam::{DMat4, DVec3, Vec3};
 use wgpu_shadows::{ShadowError, ShadowView};
 
 use super::gpu::Gpu;
 
-/// Name of the light in every technique's WGSL.
+/// Is the name of the light in every technique's WGSL.
 pub const LIGHT_NAME: &str = "light";
 
-/// A way of making shadows for one light of one scene.
+/// Is a way of making shadows for one light of one scene.
 pub trait Technique {
-    /// Records the passes that fill the maps, all of them anew.
+    /// Records the passes that fill the maps, all of them again.
     fn record(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) -> Result<(), ShadowError>;
 
-    /// WGSL with `shadow_light(position: vec3<f32>, normal: vec3<f32>) -> f32` and what it reads, in group 1.
+    /// Returns WGSL with `shadow_light(position: vec3<f32>, normal: vec3<f32>) -> f32` and what it reads, in group 1.
     fn lookup(&self) -> Lookup<'_>;
 
-    /// What the map's texels cover.
+    /// Returns what the map's texels cover.
     fn footprint(&self) -> Footprint;
 
-    /// What the last recording took, and what a lookup takes.
+    /// Returns what the last recording took, and what a lookup takes.
     fn cost(&self) -> Cost;
 
-    /// Texels to either side of an edge within which errors count as the edge's own.
+    /// Returns the number of texels to either side of an edge within which errors count as the edge's own.
     fn band_texels(&self) -> f64;
 
-    /// What the band is wider by in world units, for filters whose width is given in them.
+    /// Returns by how many world units the band is wider, for filters whose width is given in them.
     fn band_world(&self) -> f64 {
         0.0
     }
 
-    /// Are positions absolute world coordinates, or render space?
+    /// Returns whether positions are absolute world coordinates, instead of render space.
     fn takes_world_positions(&self) -> bool;
 }
 
-/// How a shader asks.
+/// Describes how a shader samples the technique.
 pub struct Lookup<'a> {
     pub wgsl: &'a str,
     pub layout: &'a wgpu::BindGroupLayout,
     pub bind_group: &'a wgpu::BindGroup,
 }
 
-/// Counts that are the same on every machine.
+/// Holds counts that are the same on every machine.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cost {
     pub texels_allocated: u64,
@@ -49,22 +49,22 @@ pub struct Cost {
     pub draws: u32,
     pub passes: u32,
     pub bytes: u64,
-    /// Per shaded pixel.
+    /// Is the number per shaded pixel.
     pub texture_instructions: u32,
-    /// Per shaded pixel.
+    /// Is the number per shaded pixel.
     pub texels_touched: u32,
 }
 
 impl Cost {
-    /// The one number that orders techniques: the memory operations of a frame of 1920×1080 shaded pixels, which are the texels
-    /// of the maps cleared once and the texture instructions of every pixel.
+    /// Returns the one number that orders techniques: the memory operations of a frame of 1920×1080 shaded pixels,
+    /// which are the texels of the maps cleared once and the texture instructions of every pixel.
     pub fn frame_work(&self) -> f64 {
         const PIXELS: f64 = 1920.0 * 1080.0;
         self.texels_cleared as f64 + PIXELS * f64::from(self.texture_instructions)
     }
 }
 
-/// The views of a technique's maps, for the size of their texels.
+/// Holds the views of a technique's maps, for the size of their texels.
 #[derive(Clone, Debug, Default)]
 pub struct Footprint {
     views: Vec<FootprintView>,
@@ -101,7 +101,7 @@ impl Footprint {
         Self { views }
     }
 
-    /// World size of a texel across the light's rays, at a place; of the first view that holds it.
+    /// Returns the world size of a texel across the light's rays, at a position; that of the first view that covers it.
     pub fn texel_world(&self, place: DVec3) -> Option<f64> {
         self.views.iter().find_map(|view| view.texel_world(place))
     }
@@ -121,7 +121,7 @@ impl FootprintView {
     }
 }
 
-/// The place that a technique is asked about, in the coordinates that it takes.
+/// Returns the position at which a technique is sampled, in the coordinates that it takes.
 pub fn asked_position(position: DVec3, origin: DVec3, in_world: bool) -> Vec3 {
     if in_world {
         (position + origin).as_vec3()

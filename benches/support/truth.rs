@@ -1,4 +1,4 @@
-//! The truth: rays through the triangles, in double precision.
+//! Computes the truth by rays through the triangles, in double precision.
 
 use glam::DVec3;
 use parry3d_f64::math::Vec3 as ParryVec3;
@@ -7,40 +7,41 @@ use parry3d_f64::shape::{CompositeShapeRef, TriMesh};
 
 use super::scene::{Light, Scene};
 
-/// The triangles of a scene, and its light, in render space.
+/// Holds the triangles of a scene, and its light, in render space.
 pub struct World {
     mesh: TriMesh,
     normals: Vec<DVec3>,
-    /// How far rays start from the surface that they leave, along its normal: far above rounding, far below any feature.
+    /// Is the distance at which rays start from the surface that they leave, along its normal: far above rounding, far
+    /// below any feature.
     lift: f64,
     light: LightInWorld,
 }
 
-/// The light in render space.
+/// Is the light in render space.
 #[derive(Clone, Copy, Debug)]
 pub enum LightInWorld {
     Far {
-        /// Unit length.
+        /// Has unit length.
         toward_light: DVec3,
-        /// Tangent of half the angular diameter.
+        /// Is the tangent of half the angular diameter.
         disc_tangent: f64,
     },
     Near {
         position: DVec3,
         range: f64,
-        /// Of the ball that shines; its disc faces every receiver.
+        /// Is the radius of the ball that shines; its disc faces every receiver.
         radius: f64,
-        /// Axis of the cone and the cosine of its half-angle; -2 for none.
+        /// Is the axis of the cone and the cosine of its half-angle; -2 if there is no cone.
         axis: DVec3,
         cone_cosine: f64,
     },
 }
 
-/// A surface point that a ray met.
+/// Is a surface point that a ray met.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit {
     pub distance: f64,
-    /// Geometric, unit length, on the side that the ray came from.
+    /// Is the geometric normal of unit length, on the side from which the ray came.
     pub normal: DVec3,
 }
 
@@ -58,8 +59,9 @@ impl World {
         )
     }
 
-    /// `diameter` is the size of the scene, from which the least distance of rays derives. Triangles without area, which no ray
-    /// meets and which have no normal, are left out; one of the others there must be.
+    /// Makes the world. `diameter` is the size of the scene, from which the least distance of rays is derived.
+    /// Triangles without area, which no ray meets and which have no normal, are left out; at least one other must
+    /// remain.
     pub fn from_triangles(triangles: &[[DVec3; 3]], diameter: f64, light: LightInWorld) -> Self {
         let with_normals: Vec<([DVec3; 3], DVec3)> = triangles
             .iter()
@@ -82,7 +84,7 @@ impl World {
         &self.light
     }
 
-    /// The nearest surface along a ray, up to a distance of `reach`.
+    /// Returns the nearest surface along a ray, up to a distance of `reach`.
     pub fn first_hit(&self, from: DVec3, direction: DVec3, reach: f64) -> Option<Hit> {
         let (triangle, distance) = self.cast(from, direction, reach)?;
         let normal = self.normals[triangle as usize];
@@ -96,18 +98,19 @@ impl World {
         })
     }
 
-    /// Distance from a surface point to the first thing between it and the middle of the light; none where it is lit.
+    /// Returns the distance from a surface point to the first thing between it and the middle of the light; `None`
+    /// where it is lit.
     pub fn occluder(&self, position: DVec3, normal: DVec3) -> Option<f64> {
         let (direction, reach) = self.light.toward_light_from(position);
         self.occluder_along(position, normal, direction, reach)
     }
 
-    /// Is the middle of the light hidden from a surface point?
+    /// Returns whether the middle of the light is hidden from a surface point.
     pub fn is_hidden(&self, position: DVec3, normal: DVec3) -> bool {
         self.occluder(position, normal).is_some()
     }
 
-    /// Is there nothing between two places on one tangent plane?
+    /// Returns whether there is nothing between two positions on one tangent plane.
     pub fn is_clear(&self, from: DVec3, to: DVec3, normal: DVec3) -> bool {
         let way = to - from;
         let (direction, reach) = (way.normalize(), way.length());
@@ -115,8 +118,9 @@ impl World {
             .is_none()
     }
 
-    /// Share of the light that a surface point sees: exact for lights without extent, else the mean over `side * side`
-    /// stratified points of its disc. Where the rim and a coarse grid agree, so does everything between.
+    /// Returns the fraction of the light that a surface point sees: exact for lights without extent, otherwise the mean
+    /// over `side * side` stratified points of its disc. Where the rim and a coarse grid agree, so does everything
+    /// between.
     pub fn visibility(&self, position: DVec3, normal: DVec3, side: u32) -> f64 {
         let (toward_light, reach) = self.light.toward_light_from(position);
         let disc_tangent = self.light.disc_tangent_from(reach);
@@ -201,7 +205,7 @@ impl LightInWorld {
         }
     }
 
-    /// Tangent of half the angle under which the light is seen from a distance of `reach`.
+    /// Returns the tangent of half the angle under which the light is seen from a distance of `reach`.
     fn disc_tangent_from(&self, reach: f64) -> f64 {
         match *self {
             Self::Far { disc_tangent, .. } => disc_tangent,
@@ -209,7 +213,7 @@ impl LightInWorld {
         }
     }
 
-    /// Unit direction toward the middle of the light, and the distance to it.
+    /// Returns the unit direction toward the middle of the light, and the distance to it.
     pub fn toward_light_from(&self, position: DVec3) -> (DVec3, f64) {
         match *self {
             Self::Far { toward_light, .. } => (toward_light, f64::INFINITY),
@@ -222,7 +226,7 @@ impl LightInWorld {
         }
     }
 
-    /// Does the light shine on a place at all, with nothing in between?
+    /// Returns whether the light shines on a position at all, with nothing in between.
     pub fn reaches(&self, place: DVec3) -> bool {
         match *self {
             Self::Far { .. } => true,
@@ -240,7 +244,8 @@ impl LightInWorld {
     }
 }
 
-/// Middles of `side * side` patches of equal area on the unit disc (the concentric map of Shirley and Chiu 1997).
+/// Returns the middles of `side * side` patches of equal area on the unit disc (the concentric map of Shirley and Chiu
+/// 1997).
 fn disc_points(side: u32) -> impl Iterator<Item = [f64; 2]> + Clone {
     let place = move |index: u32| 2.0 * (f64::from(index) + 0.5) / f64::from(side) - 1.0;
     (0..side * side).map(move |index| {
@@ -257,7 +262,7 @@ fn disc_points(side: u32) -> impl Iterator<Item = [f64; 2]> + Clone {
     })
 }
 
-/// The ray caster brings its own version of the vector library.
+/// Converts to the ray caster's own version of the vector library.
 fn to_parry(vector: DVec3) -> ParryVec3 {
     ParryVec3::from_array(vector.to_array())
 }

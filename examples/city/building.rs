@@ -1,10 +1,10 @@
-//! A building as a caster: one instance of a mesh that many share.
+//! Implements a building as a caster: one instance of a mesh that many share.
 
 use wgpu_shadows::{Aabb, CasterPipeline, Revision, ShadowCaster, ShadowView};
 
 use crate::common::mesh::{Instance, Mesh};
 
-/// One instance in the town's buffer. wgpu's buffers and the library's pipelines are handles, and cheap to clone.
+/// Is one instance in the town's buffer. wgpu's buffers and the library's pipelines are handles, and cheap to clone.
 pub struct Building {
     vertices: wgpu::Buffer,
     vertex_count: u32,
@@ -53,7 +53,7 @@ impl ShadowCaster for Building {
     }
 
     fn revision(&self) -> Option<Revision> {
-        // Buildings stay as they are.
+        // Buildings never change.
         Some(Revision::new(u64::from(self.index), 0))
     }
 }

@@ -1,11 +1,12 @@
-// The town's fragment stages. `shadow_sun` is what is put in front of this text, and Blinn-Phong what is between.
+// Contains the town's fragment stages. The text before this one defines Blinn-Phong, and the one before that
+// `shadow_sun`.
 
-// Width and height of the wall around a window, in metres.
+// Is the width and height of the wall around a window, in metres.
 const WINDOW_CELL: vec2<f32> = vec2<f32>(2.4, 3.0);
 
 const HAZE: vec3<f32> = vec3<f32>(0.45, 0.58, 0.75);
 
-// Share of a pixel of `width` at `place` that lies between `low` and `high` of each unit.
+// Returns the fraction of a pixel of `width` at `place` that lies between `low` and `high` of each unit.
 fn covered(place: vec2<f32>, width: vec2<f32>, low: vec2<f32>, high: vec2<f32>) -> vec2<f32> {
     let start = place - 0.5 * width;
     let end = place + 0.5 * width;
@@ -14,7 +15,7 @@ fn covered(place: vec2<f32>, width: vec2<f32>, low: vec2<f32>, high: vec2<f32>) 
     return (until_end - until_start) / width;
 }
 
-// Windows on all upright walls, averaged over a pixel. No triangle of a dome is upright.
+// Adds windows to all upright walls, averaged over a pixel. No triangle of a dome is upright.
 fn with_windows(surface: Surface, normal: vec3<f32>) -> Surface {
     let cells = along_surface(surface) / WINDOW_CELL;
     let width = max(fwidth(cells), vec2<f32>(1e-4));
@@ -37,12 +38,13 @@ fn lit_town(surface: Surface, normal: vec3<f32>) -> vec3<f32> {
 
 @fragment
 fn fragment(surface: Surface) -> @location(0) vec4<f32> {
-    // Domes are shaded as round and are made of flat triangles; shadows want those.
+    // Domes are shaded as round but consist of flat triangles; shadows need the normals of these.
     let normal = shadow_geometric_normal(surface.position, frame.eye - surface.position);
     return vec4<f32>(in_the_haze(lit_town(surface, normal), surface.position), 1.0);
 }
 
-// Texels of its map that a pixel covers along its longer side: (log2 + 8) / 16, and 0 where no map serves it.
+// Writes how many texels of its map a pixel covers along its longer side, as (log2 + 8) / 16, and 0 where no map covers
+// it.
 @fragment
 fn fragment_density(surface: Surface) -> @location(0) vec4<f32> {
     let across = dpdx(surface.position);

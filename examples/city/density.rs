@@ -1,8 +1,8 @@
-//! How many texels of its map a pixel covers.
+//! Measures how many texels of its map a pixel covers.
 
 use std::fmt;
 
-/// Quantiles over the pixels that a map serves.
+/// Holds quantiles over the pixels that a map covers.
 pub struct Density {
     least: f32,
     median: f32,
@@ -12,7 +12,8 @@ pub struct Density {
 }
 
 impl Density {
-    /// From a picture of `fragment_density`: the red channel is `(log2(texels) + 8) / 16`, 0 where no map serves.
+    /// Returns the quantiles of an image of `fragment_density`, whose red channel is `(log2(texels) + 8) / 16`, or 0
+    /// where no map covers the pixel.
     pub fn of(pixels: &[u8]) -> Option<Self> {
         let mut codes: Vec<u8> = pixels.iter().step_by(4).copied().collect();
         codes.retain(|code| *code > 0);

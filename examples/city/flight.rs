@@ -1,10 +1,10 @@
-//! Where the camera is: along a street, then up and over the roofs.
+//! Moves the camera: along a street, then up and over the roofs.
 
 use glam::Vec3;
 
 use crate::common::camera::Camera;
 
-/// The camera of frame `index` of `count`, for pictures of `size` pixels.
+/// Returns the camera of frame `index` of `count`, for images of `size` pixels.
 pub fn camera(index: u32, count: u32, size: [u32; 2]) -> Camera {
     let share = index as f32 / count.saturating_sub(1).max(1) as f32;
     let climb = smooth_step(0.4, 1.0, share);
@@ -15,7 +15,7 @@ pub fn camera(index: u32, count: u32, size: [u32; 2]) -> Camera {
     Camera::new(eye, eye + forward, 0.9, size)
 }
 
-/// From 0 at `start` to 1 at `end`, level at both ends.
+/// Rises from 0 at `start` to 1 at `end`, level at both ends.
 fn smooth_step(start: f32, end: f32, place: f32) -> f32 {
     let share = ((place - start) / (end - start)).clamp(0.0, 1.0);
     share * share * (3.0 - 2.0 * share)

@@ -1,16 +1,16 @@
-//! A town of some thousand buildings under four cascades: what a sun costs, and where its texels go.
+//! Shows a town of some thousand buildings under four cascades: what a sun costs, and where its texels go.
 //!
-//! `cargo run --release --example city -- [FOLDER] --frames N` flies through its streets and over its roofs in N pictures, into
-//! `target/city` or the folder named, with a table of what each frame's shadows cost; then draws which cascade serves which
-//! pixel of the first frame, and the four maps.
+//! `cargo run --release --example city -- [FOLDER] --frames N` flies through its streets and over its roofs in N
+//! images, written to `target/city` or the folder named, with a table of what each frame's shadows cost; then it draws
+//! which cascade covers which pixel of the first frame, and the four maps.
 //!
 //! ```text
 //! town.rs          streets, blocks, houses and towers
 //! plot.rs          what stands on one block
 //! random.rs        the same town every time
 //! building.rs      a building as a caster
-//! flight.rs        where the camera is
-//! sun.rs           the sun's shadows, and the pictures that they are in
+//! flight.rs        the motion of the camera
+//! sun.rs           the sun's shadows, and the images that they are in
 //! density.rs       how many texels a pixel covers
 //! table.rs         what the frames cost
 //! city.wgsl        the fragment stages
@@ -44,18 +44,18 @@ use town::Town;
 /// Flies through a town with shadows.
 #[derive(Parser)]
 struct Arguments {
-    /// Folder for the pictures.
+    /// Sets the folder for the images.
     #[arg(default_value = "target/city")]
     folder: PathBuf,
-    /// Pictures of the flight.
+    /// Sets the number of images of the flight.
     #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=1000))]
     frames: u32,
 }
 
-/// Width and height of the pictures.
+/// Is the width and height of the images.
 const SIZE: [u32; 2] = [960, 540];
 
-/// Pixels per side of the pictures of the maps, which have twice as many texels.
+/// Is the number of pixels per side of the images of the maps, which have twice as many texels.
 const MAP_PICTURE_SIZE: u32 = sun::MAP_SIZE / 2;
 
 fn main() -> ExitCode {

@@ -1,39 +1,39 @@
-//! What stands on one block: houses around a courtyard, or a tower on its square.
+//! Generates what stands on one block: houses around a courtyard, or a tower on its square.
 
 use glam::{Mat4, Quat, Vec2, Vec3};
 
 use crate::common::mesh::Instance;
 use crate::random::Random;
 
-/// Side of a block between its streets.
+/// Is the side of a block between its streets.
 pub const BLOCK_SIDE: f32 = 56.0;
 
-/// Depth of a house from the street to the courtyard.
+/// Is the depth of a house from the street to the courtyard.
 const HOUSE_DEPTH: f32 = 12.0;
 
-/// Free pavement between a block's edge and its houses.
+/// Is the width of the free pavement between a block's edge and its houses.
 const PAVEMENT: f32 = 2.5;
 
-/// Height of a storey; the windows of `city.wgsl` repeat with it.
+/// Is the height of a storey; the windows of `city.wgsl` repeat with it.
 const STOREY: f32 = 3.0;
 
-/// What of the wall stands above the ceiling of the last storey.
+/// Is the height of the wall above the ceiling of the last storey.
 const PARAPET: f32 = 0.5;
 
-/// What a building looks like.
+/// Selects the appearance of a building.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
     Box,
     Dome,
 }
 
-/// What stands somewhere.
+/// Is a part of a building, with its position.
 pub struct Part {
     pub shape: Shape,
     pub instance: Instance,
 }
 
-/// The parts of the block around `center`. Houses reach to about `eaves` metres.
+/// Returns the parts of the block around `center`. Houses reach to about `eaves` metres.
 pub fn block(random: &mut Random, center: Vec2, eaves: f32) -> Vec<Part> {
     if random.chance(0.12) {
         tower(random, center, eaves)
@@ -42,7 +42,7 @@ pub fn block(random: &mut Random, center: Vec2, eaves: f32) -> Vec<Part> {
     }
 }
 
-/// A slab, a shaft on it and sometimes a dome on top.
+/// Returns a slab, a shaft on it and sometimes a dome on top.
 fn tower(random: &mut Random, center: Vec2, eaves: f32) -> Vec<Part> {
     let stone = color(random);
     let half = random.between(7.0, 10.0);
@@ -75,14 +75,14 @@ fn tower(random: &mut Random, center: Vec2, eaves: f32) -> Vec<Part> {
     parts
 }
 
-/// Rows of houses along four streets, a gate left open here and there, and a shed in the yard.
+/// Returns rows of houses along four streets, with a gate left open here and there, and a shed in the yard.
 fn courtyard(random: &mut Random, center: Vec2, eaves: f32) -> Vec<Part> {
     let outer = BLOCK_SIDE * 0.5 - PAVEMENT;
     let middle = outer - HOUSE_DEPTH * 0.5;
     let inner = outer - HOUSE_DEPTH;
     let mut parts = Vec::new();
     for along_x in [true, false] {
-        // The rows along x go to the corners, those along z between them.
+        // The rows along x extend to the corners, and those along z lie between them.
         let reach = if along_x { outer } else { inner };
         for side in [-middle, middle] {
             let mut start = -reach;
@@ -122,7 +122,7 @@ fn courtyard(random: &mut Random, center: Vec2, eaves: f32) -> Vec<Part> {
     parts
 }
 
-/// A stairhead or a lift's machine room on a flat roof.
+/// Returns a stairhead or a lift's machine room on a flat roof.
 fn roof_room(random: &mut Random, house: Vec2, half: Vec2, bottom: f32, plaster: Vec3) -> Part {
     let aside = half * Vec2::new(random.between(-0.4, 0.4), random.between(-0.4, 0.4));
     let half = half * random.between(0.2, 0.45);
@@ -130,7 +130,7 @@ fn roof_room(random: &mut Random, house: Vec2, half: Vec2, bottom: f32, plaster:
     upright(house + aside, half, bottom, top, plaster * 0.85)
 }
 
-/// A box from `bottom` to `top` over the ground rectangle of half size `half` around `center` (x and z).
+/// Returns a box from `bottom` to `top` over the ground rectangle of half size `half` around `center` (x and z).
 pub fn upright(center: Vec2, half: Vec2, bottom: f32, top: f32, albedo: Vec3) -> Part {
     let scale = Vec3::new(half.x, (top - bottom) * 0.5, half.y);
     let middle = Vec3::new(center.x, (top + bottom) * 0.5, center.y);
@@ -144,12 +144,12 @@ pub fn upright(center: Vec2, half: Vec2, bottom: f32, top: f32, albedo: Vec3) ->
     }
 }
 
-/// The height of a roof at about `height`: whole storeys and a parapet.
+/// Returns the height of a roof at about `height`: whole storeys and a parapet.
 fn roof(height: f32) -> f32 {
     (height / STOREY).round() * STOREY + PARAPET
 }
 
-/// Plaster, brick or stone.
+/// Returns the colour of plaster, brick or stone.
 fn color(random: &mut Random) -> Vec3 {
     let tint = random.between(0.0, 1.0);
     let brick = Vec3::new(0.50, 0.29, 0.21);

@@ -1,6 +1,6 @@
-//! The same town every time: numbers that only look random.
+//! Provides pseudo-random numbers, so that the town is the same every time.
 
-/// SplitMix64.
+/// Is SplitMix64.
 pub struct Random(u64);
 
 impl Random {
@@ -15,14 +15,14 @@ impl Random {
         mixed ^ (mixed >> 31)
     }
 
-    /// Between `low` and `high`.
+    /// Returns a number between `low` and `high`.
     pub fn between(&mut self, low: f32, high: f32) -> f32 {
-        // 24 bits, as many as an f32 holds.
+        // An f32 has 24 bits of precision.
         let share = (self.next() >> 40) as f32 / (1_u64 << 24) as f32;
         low + (high - low) * share
     }
 
-    /// True in the share `probability` of all cases.
+    /// Returns true with the given probability.
     pub fn chance(&mut self, probability: f32) -> bool {
         self.between(0.0, 1.0) < probability
     }

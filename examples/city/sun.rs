@@ -1,4 +1,4 @@
-//! The sun's shadows, and the pictures that they are in.
+//! Owns the sun's shadows, and draws the images that they are in.
 
 use std::error::Error;
 use std::time::{Duration, Instant};
@@ -17,30 +17,30 @@ use crate::common::{map_picture, picture};
 use crate::density::Density;
 use crate::town::Town;
 
-/// Texels per side of each cascade.
+/// Is the number of texels per side of each cascade.
 pub const MAP_SIZE: u32 = 2048;
 
-/// How many cascades.
+/// Is the number of cascades.
 pub const CASCADES: u32 = 4;
 
-/// From the town to the sun: some thirty degrees above the roofs, and a little aside of the streets.
+/// Points from the town to the sun: some thirty degrees above the roofs, and slightly across the streets.
 const TOWARD_SUN: Vec3 = Vec3::new(0.44, 0.52, 0.70);
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
-/// Pictures are drawn at twice their size and averaged. Multisampling shades at the centre of a pixel what only a corner of it
-/// shows: at the foot of a lit wall that is pavement inside the house, and dark.
+/// Is the size at which images are drawn: twice their own, and then averaged. Multisampling would shade at the centre
+/// of a pixel what only a corner of it shows: at the foot of a lit wall that is pavement inside the house, and dark.
 const DRAWN_SIZE: [u32; 2] = [2 * crate::SIZE[0], 2 * crate::SIZE[1]];
 
-/// What a picture shows.
+/// Selects what an image shows.
 #[derive(Clone, Copy)]
 pub enum Show {
     Scene,
-    /// The scene, tinted by the cascade that serves the pixel.
+    /// Shows the scene, tinted by the cascade that covers the pixel.
     Cascades,
 }
 
-/// A sun that casts shadows, and the passes that ask for them.
+/// Holds a sun that casts shadows, and the passes that sample them.
 pub struct Sun {
     shadow_scene: ShadowScene,
     shadow: DirectionalShadow,
@@ -94,17 +94,17 @@ impl Sun {
         })
     }
 
-    /// What the last frame cost.
+    /// Returns what the last frame cost.
     pub fn report(&self) -> &ShadowReport {
         self.shadow.maps().report()
     }
 
-    /// Time on the CPU of the last frame's shadows: checks, fit, cull, and the recording of the passes.
+    /// Returns the CPU time of the last frame's shadows: checks, fit, cull, and the recording of the passes.
     pub fn record_time(&self) -> Duration {
         self.record_time
     }
 
-    /// The picture that `camera` takes of the town: depth passes, then the scene.
+    /// Draws the image of the town from `camera`: depth passes, then the scene.
     pub fn draw(
         &mut self,
         gpu: &Gpu,
@@ -144,7 +144,7 @@ impl Sun {
         Ok(picture::halved(&gpu.read(encoder, &target)?, DRAWN_SIZE))
     }
 
-    /// How many texels the pixels of the last picture cover, as `camera` took it.
+    /// Returns how many texels the pixels of the last image cover, for the same `camera`.
     pub fn density(
         &self,
         gpu: &Gpu,
@@ -170,7 +170,7 @@ impl Sun {
         Ok(Density::of(&gpu.read(encoder, &target)?))
     }
 
-    /// The map of one cascade as the last frame left it.
+    /// Draws the map of one cascade as the last frame left it.
     pub fn draw_map(
         &self,
         gpu: &Gpu,
@@ -183,7 +183,7 @@ impl Sun {
     }
 }
 
-/// A late afternoon.
+/// Returns the light of a late afternoon.
 fn lighting() -> Lighting {
     Lighting {
         light: TOWARD_SUN.normalize().extend(0.0),

@@ -1,18 +1,18 @@
-//! What the frames cost.
+//! Prints what the frames cost.
 
 use std::fmt::Write;
 use std::time::Duration;
 
 use wgpu_shadows::{report::ShadowReport, report::ViewStatus};
 
-/// Times of the frames so far.
+/// Holds the times of the frames so far.
 #[derive(Default)]
 pub struct Table {
     record_times: Vec<Duration>,
 }
 
 impl Table {
-    /// Takes a frame in, and returns its rows: one per cascade.
+    /// Adds a frame, and returns its rows: one per cascade.
     pub fn add(&mut self, report: &ShadowReport, record_time: Duration) -> String {
         self.record_times.push(record_time);
         let mut rows = String::from(
@@ -49,12 +49,12 @@ impl Table {
         rows
     }
 
-    /// Frames so far.
+    /// Returns the number of frames so far.
     pub fn frames(&self) -> usize {
         self.record_times.len()
     }
 
-    /// Median of the frames' times on the CPU, the upper one of two.
+    /// Returns the median of the frames' times on the CPU, the upper one of two.
     pub fn median_record_time(&self) -> Duration {
         let mut sorted = self.record_times.clone();
         sorted.sort();

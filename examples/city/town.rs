@@ -1,4 +1,4 @@
-//! Streets in a grid, blocks between them, and everything on them in one instance buffer.
+//! Generates streets in a grid, blocks between them, and everything on them in one instance buffer.
 
 use glam::{Vec2, Vec3};
 use wgpu_shadows::{
@@ -12,24 +12,25 @@ use crate::common::phong::Batch;
 use crate::plot::{self, BLOCK_SIDE, Part, Shape};
 use crate::random::Random;
 
-/// From the middle of one street to the middle of the next.
+/// Is the distance from the middle of one street to the middle of the next.
 pub const STREET_SPACING: f32 = BLOCK_SIDE + 14.0;
 
-/// Blocks along each side of the town.
+/// Is the number of blocks along each side of the town.
 const BLOCKS: i32 = 18;
 
-/// Height of the kerbs.
+/// Is the height of the kerbs.
 const KERB: f32 = 0.15;
 
-/// The town. Streets run along x and z; one of each passes through the middle.
+/// Holds the town. Streets run along x and z; one of each passes through the middle.
 pub struct Town {
     pub buildings: Vec<Building>,
-    /// What only receives: streets and pavements.
+    /// Bounds what only receives: streets and pavements.
     pub ground: Aabb,
     box_mesh: Mesh,
     dome_mesh: Mesh,
     instances: wgpu::Buffer,
-    /// The instances in order: ground and pavements, buildings that are boxes, domes.
+    /// Is the index of the first dome. The instances are, in order: ground and pavements, buildings that are boxes,
+    /// domes.
     first_dome: u32,
     instance_count: u32,
 }
@@ -45,7 +46,7 @@ impl Town {
             let half = Vec2::splat(BLOCK_SIDE * 0.5);
             let slab = Vec3::new(0.46, 0.45, 0.43);
             pavements.push(plot::upright(center, half, 0.0, KERB, slab));
-            // Higher toward the middle.
+            // Buildings are higher toward the middle.
             let eaves = 9.0 + 16.0 * (-cell.length_squared() / 30.0).exp();
             for part in plot::block(&mut random, center, eaves) {
                 match part.shape {
@@ -84,7 +85,7 @@ impl Town {
         })
     }
 
-    /// All of the town in two draws.
+    /// Returns all of the town in two draws.
     pub fn batches(&self) -> [Batch<'_>; 2] {
         let batch = |mesh, range| Batch {
             mesh,
@@ -98,7 +99,7 @@ impl Town {
     }
 }
 
-/// Streets and pavements.
+/// Returns the bounds of streets and pavements.
 fn ground() -> Aabb {
     let reach = BLOCKS as f32 * 0.5 * STREET_SPACING;
     Aabb::new(
@@ -107,14 +108,14 @@ fn ground() -> Aabb {
     )
 }
 
-/// One slab of asphalt under everything.
+/// Returns one slab of asphalt under everything.
 fn street() -> Part {
     let half = ground().max.x;
     let asphalt = Vec3::new(0.20, 0.20, 0.21);
     plot::upright(Vec2::ZERO, Vec2::splat(half), -1.0, 0.0, asphalt)
 }
 
-/// Reads the matrices where the scene's pass reads them: in the instance buffer.
+/// Creates a pipeline that reads the matrices where the scene's pass reads them: in the instance buffer.
 fn caster_pipeline(device: &wgpu::Device) -> Result<CasterPipeline, CasterError> {
     CasterPipeline::new(
         device,

@@ -1,11 +1,11 @@
-//! The command line, and errors in one line.
+//! Parses the command line, and prints errors in one line.
 
 use std::error::Error;
 use std::process::ExitCode;
 
 use clap::Parser;
 
-/// Parses the command line and runs the example `name` with it. What goes wrong is said in one line.
+/// Parses the command line and runs the example `name` with it. An error is printed in one line.
 pub fn run<A: Parser>(
     name: &str,
     example: impl FnOnce(A) -> Result<(), Box<dyn Error>>,

@@ -1,10 +1,10 @@
-//! Where a scene is looked at from.
+//! Defines the camera of a scene.
 
 use glam::camera::rh::{proj::directx::perspective_infinite_reverse, view::look_at_mat4};
 use glam::{Mat4, Vec3};
 use wgpu_shadows::CameraView;
 
-/// A perspective camera with reversed depth.
+/// Is a perspective camera with reversed depth.
 pub struct Camera {
     pub eye: Vec3,
     pub view_from_render: Mat4,
@@ -12,7 +12,7 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// From `eye` toward `target`, for pictures of `width` by `height` pixels.
+    /// Makes a camera from `eye` toward `target`, for images of `width` by `height` pixels.
     pub fn new(
         eye: Vec3,
         target: Vec3,
@@ -27,12 +27,12 @@ impl Camera {
         }
     }
 
-    /// Clip space from render space.
+    /// Returns the matrix to clip space from render space.
     pub fn clip_from_render(&self) -> Mat4 {
         self.clip_from_view * self.view_from_render
     }
 
-    /// The camera as the library takes it.
+    /// Returns the camera as the library takes it.
     pub fn for_shadows(&self) -> CameraView {
         CameraView::new(self.view_from_render, self.clip_from_view)
     }

@@ -1,15 +1,15 @@
-//! A device without a window, and pictures from it.
+//! Provides a device without a window, and reads images from it.
 
 use std::error::Error;
 
-/// Device and queue.
+/// Holds device and queue.
 pub struct Gpu {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
 }
 
 impl Gpu {
-    /// Takes the adapter that wgpu prefers, of the backends that the variable `WGPU_BACKEND` names.
+    /// Uses the adapter that wgpu prefers, of the backends that the variable `WGPU_BACKEND` names.
     pub fn new() -> Result<Self, Box<dyn Error>> {
         let options = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
         let adapter = wgpu::Instance::new(options).request_adapter(&Default::default());
@@ -20,14 +20,15 @@ impl Gpu {
         Ok(Self { device, queue })
     }
 
-    /// A texture to draw to and, with one sample a pixel, to read back.
+    /// Creates a texture to draw to and, with one sample per pixel, to read back.
     pub fn target(
         &self,
         format: wgpu::TextureFormat,
         [width, height]: [u32; 2],
         sample_count: u32,
     ) -> wgpu::Texture {
-        // Samples cannot be read back, and on OpenGL a texture that could be copied from would not resolve.
+        // Multisampled textures cannot be read back, and on OpenGL a texture that can be copied from would not be
+        // resolved.
         let readable = if sample_count == 1 {
             wgpu::TextureUsages::COPY_SRC
         } else {
@@ -49,7 +50,7 @@ impl Gpu {
         })
     }
 
-    /// Submits `encoder`, waits, and reads `texture` (four bytes a pixel) row by row.
+    /// Submits `encoder`, waits, and reads `texture` (four bytes per pixel) row by row.
     pub fn read(
         &self,
         mut encoder: wgpu::CommandEncoder,

@@ -1,4 +1,4 @@
-//! A shadow map as a picture.
+//! Draws a shadow map as an image.
 
 use std::error::Error;
 
@@ -8,7 +8,7 @@ use super::gpu::Gpu;
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// Draws `what` of `source` after what `encoder` holds, submits, and reads the picture back: four bytes a pixel.
+/// Draws `what` of `source` after the commands of `encoder`, submits, and reads the image back: four bytes per pixel.
 pub fn draw(
     gpu: &Gpu,
     mut encoder: wgpu::CommandEncoder,

@@ -1,4 +1,4 @@
-//! Meshes as the engine keeps them: a vertex buffer, and instances with a matrix and a colour each.
+//! Holds meshes as the engine keeps them: a vertex buffer, and instances with a matrix and a colour each.
 
 use std::f32::consts::{PI, TAU};
 
@@ -7,7 +7,7 @@ use glam::{Mat4, Vec3};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu_shadows::Aabb;
 
-/// A vertex; the library reads its position, the engine's shader its normal too.
+/// Is a vertex; the library reads its position, and the engine's shader reads its normal as well.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
 pub struct Vertex {
@@ -15,17 +15,17 @@ pub struct Vertex {
     pub normal: Vec3,
 }
 
-/// What the engine's shader knows of an object. The library reads the matrix.
+/// Is an object as the engine's shader sees it. The library reads the matrix.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
 pub struct Instance {
     pub render_from_model: Mat4,
     pub albedo: Vec3,
-    /// Contrast of the squares on the surface; 0 leaves it plain.
+    /// Is the contrast of the squares on the surface; 0 leaves it plain.
     pub checker: f32,
 }
 
-/// Triangles in model space.
+/// Holds triangles in model space.
 pub struct Mesh {
     pub vertices: wgpu::Buffer,
     pub vertex_count: u32,
@@ -42,7 +42,7 @@ impl Mesh {
     }
 }
 
-/// A mesh that stands somewhere.
+/// Is a mesh with its position.
 pub struct Object {
     pub mesh: Mesh,
     pub instance: wgpu::Buffer,
@@ -59,7 +59,7 @@ impl Object {
     }
 }
 
-/// The cube from -1 to 1.
+/// Returns the cube from -1 to 1.
 pub fn cube() -> Vec<Vertex> {
     [Vec3::X, Vec3::Y, Vec3::Z]
         .into_iter()
@@ -68,8 +68,8 @@ pub fn cube() -> Vec<Vertex> {
         .collect()
 }
 
-/// A square of half side 1 whose front looks along `out`, an axis, from `distance` in that direction: two triangles,
-/// counter-clockwise as seen from the front.
+/// Returns a square of half side 1 whose front faces along `out`, an axis, from `distance` in that direction: two
+/// triangles, counter-clockwise as seen from the front.
 pub fn square(out: Vec3, distance: f32) -> [Vertex; 6] {
     let right = Vec3::new(out.y, out.z, out.x);
     let up = out.cross(right);
@@ -87,7 +87,7 @@ pub fn square(out: Vec3, distance: f32) -> [Vertex; 6] {
     })
 }
 
-/// The same triangles with their fronts behind: a room out of a box.
+/// Returns the same triangles with their fronts reversed, which makes a room of a box.
 pub fn inside_out(mesh: &[Vertex]) -> Vec<Vertex> {
     mesh.iter()
         .rev()
@@ -98,7 +98,7 @@ pub fn inside_out(mesh: &[Vertex]) -> Vec<Vertex> {
         .collect()
 }
 
-/// The sphere of radius 1 in `rings` from pole to pole, each of twice as many quadrilaterals.
+/// Returns the sphere of radius 1 in `rings` from pole to pole, each of twice as many quadrilaterals.
 pub fn sphere(rings: u32) -> Vec<Vertex> {
     let corner = |(ring, step): (u32, u32)| {
         let (sine, cosine) = (PI * ring as f32 / rings as f32).sin_cos();
@@ -125,7 +125,7 @@ pub fn sphere(rings: u32) -> Vec<Vertex> {
         .collect()
 }
 
-/// A buffer of vertices or instances.
+/// Creates a buffer of vertices or instances.
 pub fn vertex_buffer<T: NoUninit>(device: &wgpu::Device, contents: &[T]) -> wgpu::Buffer {
     device.create_buffer_init(&BufferInitDescriptor {
         label: Some("mesh"),

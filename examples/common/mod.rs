@@ -1,11 +1,11 @@
-//! What the examples that draw pictures share: a small engine without a window.
+//! Contains what the examples that draw images share: a small engine without a window.
 //!
 //! ```text
 //! arguments.rs    the command line, and errors in one line
-//! gpu.rs          a device without a window, and pictures from it
+//! gpu.rs          a device without a window, and images from it
 //! picture.rs      PNG files
-//! map_picture.rs  a shadow map as a picture
-//! camera.rs       where a scene is looked at from
+//! map_picture.rs  a shadow map as an image
+//! camera.rs       the camera of a scene
 //! mesh.rs         boxes, squares and spheres
 //! phong.rs        the pass that draws them
 //! phong.wgsl      its vertex stage and Blinn-Phong

@@ -1,4 +1,4 @@
-//! The pass that draws meshes with Blinn-Phong, one light and its shadow.
+//! Contains the pass that draws meshes with Blinn-Phong, one light and its shadow.
 
 use std::ops::Range;
 
@@ -12,43 +12,43 @@ use super::mesh::{Instance, Mesh, Object, Vertex};
 
 const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// What a [`Phong`] is made of.
+/// Describes what a [`Phong`] is made of.
 pub struct PhongDescriptor<'a> {
-    /// WGSL that the fragment stage asks for visibility.
+    /// Is WGSL that defines the visibility functions of the fragment stage.
     pub visibility_wgsl: &'a str,
-    /// WGSL of the fragment stage, which may call `shade`.
+    /// Is WGSL of the fragment stage, which may call `shade`.
     pub fragment_wgsl: &'a str,
     pub fragment_entry: &'a str,
-    /// Bind group that visibility is read from.
+    /// Is the bind group that visibility is read from.
     pub shadow_group: u32,
     pub shadow_layout: &'a wgpu::BindGroupLayout,
     pub format: wgpu::TextureFormat,
     pub sample_count: u32,
 }
 
-/// Light and eye of a picture.
+/// Describes light and camera of an image.
 #[derive(Clone, Copy)]
 pub struct Lighting {
-    /// Toward a sun (w = 0), or the place of a lamp (w = 1).
+    /// Is the direction toward a sun (w = 0), or the position of a point light (w = 1).
     pub light: Vec4,
     pub light_color: Vec3,
-    /// Where a lamp's light ends.
+    /// Is the distance at which a point light ends.
     pub light_range: f32,
     pub ambient: Vec3,
-    /// Linear colour where nothing is.
+    /// Is the linear colour where nothing is drawn.
     pub sky: Vec3,
 }
 
-/// Where a picture is taken, in what light, with which shadows, and where it goes.
+/// Describes an image: its camera, its light, its shadows, and its target.
 pub struct Picture<'a> {
     pub camera: &'a Camera,
     pub lighting: &'a Lighting,
-    /// Bind group that visibility is read from.
+    /// Is the bind group that visibility is read from.
     pub shadows: &'a wgpu::BindGroup,
     pub target: &'a wgpu::Texture,
 }
 
-/// Mirror of `Frame` in `phong.wgsl`.
+/// Mirrors `Frame` in `phong.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct Frame {
@@ -60,7 +60,7 @@ struct Frame {
     eye: Vec4,
 }
 
-/// Instances of one mesh.
+/// Holds instances of one mesh.
 pub struct Batch<'a> {
     pub mesh: &'a Mesh,
     pub instances: &'a wgpu::Buffer,
@@ -77,12 +77,12 @@ impl<'a> From<&'a Object> for Batch<'a> {
     }
 }
 
-/// A pipeline, and the pass around it.
+/// Holds a pipeline, and the pass around it.
 pub struct Phong {
     pipeline: wgpu::RenderPipeline,
     frame_layout: wgpu::BindGroupLayout,
     shadow_group: u32,
-    /// More lights than the one of a frame, in the group behind that of the shadows.
+    /// Holds further lights than the one of a frame, in the group behind that of the shadows.
     lights: Option<wgpu::BindGroup>,
     format: wgpu::TextureFormat,
     sample_count: u32,
@@ -93,7 +93,7 @@ impl Phong {
         Self::with_lights(gpu, descriptor, None)
     }
 
-    /// The same, with a bind group of lights for the fragment stage behind that of the shadows.
+    /// Makes the pass with a bind group of lights for the fragment stage, behind that of the shadows.
     pub fn with_lights(
         gpu: &Gpu,
         descriptor: &PhongDescriptor<'_>,
@@ -128,7 +128,7 @@ impl Phong {
         }
     }
 
-    /// Draws `batches` over the whole of the picture's target.
+    /// Draws `batches` over the whole of the image's target.
     pub fn draw<'a>(
         &self,
         gpu: &Gpu,
@@ -168,7 +168,7 @@ impl Phong {
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &depth.create_view(&Default::default()),
-                // Reversed depth: the far end of the world is 0.
+                // Depth is reversed: the far end of the world is 0.
                 depth_ops: Some(wgpu::Operations {
                     load: wgpu::LoadOp::Clear(0.0),
                     store: wgpu::StoreOp::Discard,

@@ -1,11 +1,12 @@
-// Blinn-Phong with one light. An example puts its fragment stage behind this text, and what that asks for visibility in front.
+// Computes Blinn-Phong with one light. An example puts its fragment stage behind this text, and the visibility
+// functions that it calls in front.
 
 struct Frame {
     clip_from_render: mat4x4<f32>,
-    // Toward a sun (w = 0), or the place of a lamp (w = 1).
+    // Is the direction toward a sun (w = 0), or the position of a point light (w = 1).
     light: vec4<f32>,
     light_color: vec3<f32>,
-    // Where a lamp's light ends.
+    // Is the distance at which a point light ends.
     light_range: f32,
     ambient: vec3<f32>,
     eye: vec3<f32>,
@@ -33,8 +34,8 @@ fn vertex(
 ) -> Surface {
     let render_from_model = mat4x4<f32>(column_x, column_y, column_z, column_w);
     let place = render_from_model * vec4<f32>(position, 1.0);
-    // Matrices here are turns after scales, for which the inverse transpose is the matrix over its squared scales. A common
-    // factor does not count: taken out, it leaves ones where all scales are equal.
+    // Matrices here are rotations after scales, for which the inverse transpose is the matrix divided by its squared
+    // scales. A common factor has no effect: with it removed, the scales are ones where all are equal.
     let squared = vec3<f32>(
         dot(column_x, column_x),
         dot(column_y, column_y),
@@ -50,7 +51,7 @@ fn vertex(
     return surface;
 }
 
-// Squares of side 1, averaged over a pixel: between -1 and 1.
+// Returns squares of side 1, averaged over a pixel: between -1 and 1.
 fn checker(place: vec2<f32>) -> f32 {
     let width = max(fwidth(place), vec2<f32>(1e-4));
     let left = abs(fract((place - 0.5 * width) * 0.5) - 0.5);
@@ -59,14 +60,14 @@ fn checker(place: vec2<f32>) -> f32 {
     return stripes.x * stripes.y;
 }
 
-// The two coordinates along the axis-aligned plane that the surface is closest to.
+// Returns the two coordinates along the axis-aligned plane that the surface is closest to.
 fn along_surface(surface: Surface) -> vec2<f32> {
     let steepness = abs(surface.normal);
     let wall = select(surface.position.xy, surface.position.zy, steepness.x > steepness.z);
     return select(wall, surface.position.xz, steepness.y > max(steepness.x, steepness.z));
 }
 
-// The colour of a surface that the light reaches to the share `visibility`.
+// Returns the colour of a surface of which the fraction `visibility` of the light is visible.
 fn shade(surface: Surface, visibility: f32) -> vec3<f32> {
     let albedo = surface.albedo * (1.0 + surface.checker * checker(along_surface(surface)));
     var toward_light = frame.light.xyz;

@@ -1,4 +1,4 @@
-// Casters with holes: the library's caster module comes before this.
+// Draws casters with holes. The library's caster module comes before this text.
 
 struct Mask {
     base_color: vec4<f32>,

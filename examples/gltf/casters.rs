@@ -1,4 +1,4 @@
-//! The scene's `ShadowCaster`: one per instance, over shared buffers.
+//! Implements the scene's `ShadowCaster`: one per instance, over shared buffers.
 
 use glam::Vec3;
 use wgpu_shadows::{
@@ -11,14 +11,14 @@ use crate::device::Gpu;
 use crate::geometry::{Draw, Geometry, INSTANCE_LAYOUT, VERTEX_LAYOUT};
 use crate::scene::{Mesh, Scene, Vertex};
 
-/// An instance of a mesh. The scene does not move, so its version never changes.
+/// Is an instance of a mesh. The scene does not move, so its version never changes.
 pub struct SceneCaster<'a> {
     geometry: &'a Geometry,
     draw: &'a Draw,
     bounds_render: Aabb,
     shape_render: CasterShape,
     pipeline: CasterPipeline,
-    /// Alpha-masked: its holes let light through.
+    /// States that it is alpha-masked: its holes let light through.
     masked: bool,
 }
 
@@ -55,7 +55,8 @@ impl ShadowCaster for SceneCaster<'_> {
     }
 }
 
-/// One caster per instance. Both sides of every triangle cast, but for closed solids, whose back faces no light sees first.
+/// Returns one caster per instance. Both sides of every triangle cast, except for closed solids, whose back faces are
+/// never the first that the light meets.
 pub fn scene_casters<'a>(
     gpu: &Gpu,
     scene: &Scene,

@@ -1,22 +1,22 @@
-//! Adapter, device, and pictures read back from it.
+//! Provides adapter and device, and reads images back.
 
 use std::path::Path;
 
 use crate::options::Backend;
 
-/// A device without a window.
+/// Is a device without a window.
 pub struct Gpu {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
     pub adapter_info: wgpu::AdapterInfo,
-    /// Timestamps can be written between passes.
+    /// States that timestamps can be written between passes.
     pub timestamps: bool,
 }
 
 impl Gpu {
-    /// The wanted backend, or the first that has an adapter.
+    /// Uses the wanted backend, or the first that has an adapter.
     pub fn new(wanted: Option<Backend>) -> Result<Self, String> {
-        // Vulkan first: merely looking for an OpenGL display makes some drivers talk to stderr.
+        // Vulkan comes first: merely looking for an OpenGL display makes some drivers write to stderr.
         let backends: &[wgpu::Backends] = match wanted {
             Some(Backend::Vulkan) => &[wgpu::Backends::VULKAN],
             Some(Backend::Gl) => &[wgpu::Backends::GL],
@@ -57,7 +57,7 @@ impl Gpu {
             .map_err(|error| format!("the device stopped: {error}"))
     }
 
-    /// Bytes of a mappable buffer.
+    /// Returns the bytes of a mappable buffer.
     pub fn read_buffer(&self, buffer: &wgpu::Buffer) -> Result<Vec<u8>, String> {
         let slice = buffer.slice(..);
         slice.map_async(wgpu::MapMode::Read, |_| {});
@@ -70,7 +70,7 @@ impl Gpu {
         Ok(bytes)
     }
 
-    /// Rows of a texture without padding.
+    /// Returns the rows of a texture without padding.
     pub fn read_texture(&self, texture: &wgpu::Texture) -> Result<Vec<u8>, String> {
         let texel_bytes = texture.format().block_copy_size(None).unwrap_or(4);
         let row = texture.width() * texel_bytes;
@@ -103,7 +103,7 @@ impl Gpu {
     }
 }
 
-/// Writes a picture, with its path in the error.
+/// Writes an image, with its path in the error.
 pub fn save_png(path: &Path, picture: &image::DynamicImage) -> Result<(), String> {
     picture
         .save_with_format(path, image::ImageFormat::Png)

@@ -1,4 +1,4 @@
-//! The scene on the device: one vertex, one index and one instance buffer, a bind group per material.
+//! Holds the scene on the device: one vertex, one index and one instance buffer, and a bind group per material.
 
 use std::ops::Range;
 
@@ -7,14 +7,14 @@ use wgpu::util::DeviceExt;
 use crate::device::Gpu;
 use crate::scene::{Material, Picture, Scene, Vertex};
 
-/// Vertices in slot 0.
+/// Describes the vertices in slot 0.
 pub const VERTEX_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
     array_stride: size_of::<Vertex>() as u64,
     step_mode: wgpu::VertexStepMode::Vertex,
     attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x2],
 };
 
-/// Matrices in slot 1.
+/// Describes the matrices in slot 1.
 pub const INSTANCE_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
     array_stride: 64,
     step_mode: wgpu::VertexStepMode::Instance,
@@ -23,15 +23,15 @@ pub const INSTANCE_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBuffe
     ],
 };
 
-/// One draw call.
+/// Is one draw call.
 #[derive(Clone)]
 pub struct Draw {
     pub indices: Range<u32>,
     pub base_vertex: i32,
     pub material: usize,
-    /// Which matrix.
+    /// Is the index of its matrix.
     pub instance: usize,
-    /// The transform mirrors: front faces wind the other way.
+    /// States that the transform mirrors, so that front faces wind the other way.
     pub mirrored: bool,
 }
 
@@ -45,7 +45,7 @@ pub struct Geometry {
     pub material_groups: Vec<wgpu::BindGroup>,
 }
 
-/// Mirror of `Material` in `shade.wgsl`.
+/// Mirrors `Material` in `shade.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct MaterialUniform {

@@ -1,11 +1,11 @@
-//! The images of a glTF file, as RGBA of 8 bits.
+//! Loads the images of a glTF file, as RGBA of 8 bits.
 
 use std::path::Path;
 
 use crate::load::progress;
 use crate::scene::Picture;
 
-/// All images of the document, decoded.
+/// Returns all images of the document, decoded.
 pub fn load(
     document: &gltf::Document,
     folder: Option<&Path>,

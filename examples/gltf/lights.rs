@@ -1,4 +1,5 @@
-//! The scene's shadows, and the WGSL that asks them: a `DirectionalShadow` for each sun, pools for spots and lamps.
+//! Owns the scene's shadows, and the WGSL that samples them: a `DirectionalShadow` for each sun, and pools for spot and
+//! point lights.
 
 use std::fmt::Write;
 
@@ -13,14 +14,15 @@ use crate::device::Gpu;
 use crate::options::Options;
 use crate::scene::{Light, LightKind, Scene};
 
-/// Lights that the shader loops over.
+/// Is the number of lights that the shader loops over at most.
 pub const MAX_LIGHTS: usize = 256;
-/// Directional lights with shadows: each takes a texture of its own.
+/// Is the largest number of directional lights with shadows, each of which needs a texture of its own.
 const MAX_SUNS: usize = 4;
-/// Local lights in one pool: 40 times six faces are 240 layers and 54 KB of uniforms, within WebGPU's defaults.
+/// Is the number of local lights in one pool: 40 times six faces are 240 layers and 54 KB of uniforms, within WebGPU's
+/// defaults.
 const POOL_CAPACITY: usize = 40;
 
-/// A set of maps, and the lights of the scene that it serves.
+/// Is a set of maps, and the lights of the scene that it belongs to.
 enum Maps {
     Sun {
         shadow: Box<DirectionalShadow>,
@@ -53,7 +55,7 @@ impl Maps {
         }
     }
 
-    /// Lights of the scene, with their index in the pool.
+    /// Returns the lights of the scene, with their index in the pool.
     fn lights(&self) -> Vec<(usize, u32)> {
         match self {
             Self::Sun { light, .. } => vec![(*light, 0)],
@@ -65,18 +67,18 @@ impl Maps {
     }
 }
 
-/// Lights of the scene with their shadows.
+/// Holds the lights of the scene with their shadows.
 pub struct SceneLights {
     pub lights: Vec<Light>,
     shadow_scene: ShadowScene,
     maps: Vec<(String, Maps)>,
     pub bindings: ShadowBindings,
-    /// `visibility_of_light(maps, index, position, normal)`.
+    /// Defines `visibility_of_light(maps, index, position, normal)`.
     pub wgsl: String,
     max_distance: f32,
 }
 
-/// Mirror of `Light` in `shade.wgsl`.
+/// Mirrors `Light` in `shade.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Default, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct LightUniform {
@@ -87,9 +89,9 @@ pub struct LightUniform {
     position: [f32; 3],
     cone_scale: f32,
     cone_offset: f32,
-    /// Which maps, counted from 1; 0 for a light without shadows.
+    /// Is the number of its maps, counted from 1; 0 for a light without shadows.
     maps: u32,
-    /// Index in a pool.
+    /// Is its index in a pool.
     index: u32,
     padding: f32,
 }
@@ -180,7 +182,7 @@ impl SceneLights {
         Ok(())
     }
 
-    /// Makes the next frame draw every map anew.
+    /// Makes the next frame draw every map again.
     pub fn invalidate(&mut self) {
         for (_, maps) in &mut self.maps {
             match maps {
@@ -191,7 +193,7 @@ impl SceneLights {
         }
     }
 
-    /// Each set of maps with its report and the lights that it serves.
+    /// Returns each set of maps with its report and the lights that it belongs to.
     pub fn reports(&self) -> impl Iterator<Item = (&str, &ShadowReport, Vec<usize>)> {
         self.maps.iter().map(|(name, maps)| {
             let lights = maps.lights().into_iter().map(|(light, _)| light).collect();
@@ -202,7 +204,7 @@ impl SceneLights {
     pub fn uniforms(&self) -> Vec<LightUniform> {
         let mut uniforms = vec![LightUniform::default(); MAX_LIGHTS];
         for (uniform, light) in uniforms.iter_mut().zip(&self.lights) {
-            // Without a cone, scale 0 and offset 1 let everything through.
+            // Without a cone, scale 0 and offset 1 pass all light.
             let (cone_scale, cone_offset) = match light.kind {
                 LightKind::Spot {
                     inner_cone_radians,
@@ -234,8 +236,8 @@ impl SceneLights {
         uniforms
     }
 
-    /// Brings the brightest light to an irradiance of one at the middle of the scene, or, for a light in the middle, at a
-    /// quarter of the scene's radius.
+    /// Returns the exposure that brings the brightest light to an irradiance of one at the middle of the scene, or, for
+    /// a light in the middle, at a quarter of the scene's radius.
     pub fn exposure(&self, scene: &Scene) -> f32 {
         let bounds = scene.bounds_render();
         let middle = (bounds.min + bounds.max) * 0.5;
@@ -277,7 +279,8 @@ fn listed<L>(
         .collect()
 }
 
-/// Suns one by one, spots and lamps in pools of one map size each. Names end in a letter, as WGSL wants them.
+/// Makes maps for suns one by one, and for spot and point lights in pools of one map size each. Names end in a letter,
+/// as the library requires.
 fn make_maps(
     gpu: &Gpu,
     lights: &[Light],
@@ -298,7 +301,7 @@ fn make_maps(
             suns.len()
         );
     }
-    // A lamp or two may be as fine as a sun; a hall full of them shares the memory.
+    // One or two point lights may be as fine as a sun; a hall full of them shares the memory.
     let local_map_size = options.map_size.unwrap_or(match spots.len() + lamps.len() {
         0..=2 => 2048,
         3..=8 => 1024,
@@ -332,6 +335,7 @@ fn make_maps(
         map_size: local_map_size,
         filter: options.local_filter(),
         bias: options.bias,
+        ..Default::default()
     };
     for (number, lights) in spots.chunks(POOL_CAPACITY).enumerate() {
         let mut pool = SpotShadowPool::new(&gpu.device, &descriptor("spots", lights))

@@ -1,4 +1,4 @@
-//! A glTF file to triangles, textures, lights and a camera, with every node transform multiplied out in f64.
+//! Loads a glTF file as triangles, textures, lights and a camera, with every node transform multiplied out in f64.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -13,13 +13,13 @@ use crate::images;
 use crate::primitive;
 use crate::scene::{Instance, Lens, Light, LightKind, Material, Mesh, Scene, camera_view};
 
-/// A node that carries something, with its transform.
+/// Is a node that carries something, with its transform.
 struct Placed<'a> {
     node: gltf::Node<'a>,
     world_from_node: DMat4,
 }
 
-/// Loads `path` for a picture of `size` pixels, seen by the file's `camera` (counted from 0).
+/// Loads `path` for an image of `size` pixels, seen by the file's `camera` (counted from 0).
 pub fn load(path: &Path, size: [u32; 2], camera: usize) -> Result<Scene, String> {
     let failed = |error: gltf::Error| format!("cannot read {}: {error}", path.display());
     let gltf::Gltf { document, blob } = gltf::Gltf::open(path).map_err(failed)?;
@@ -63,7 +63,7 @@ pub fn load(path: &Path, size: [u32; 2], camera: usize) -> Result<Scene, String>
     })
 }
 
-/// Shown only where stderr is a terminal, and only for work that takes a while.
+/// Returns a progress bar that is shown only where stderr is a terminal, and only for work that takes a while.
 pub fn progress(what: &'static str, steps: usize) -> ProgressBar {
     let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}")
         .unwrap_or_else(|_| ProgressStyle::default_bar());
@@ -72,7 +72,7 @@ pub fn progress(what: &'static str, steps: usize) -> ProgressBar {
         .with_message(what)
 }
 
-/// The nodes of the default scene, or of all scenes where none is the default.
+/// Returns the nodes of the default scene, or of all scenes where none is the default.
 fn placed_nodes(document: &gltf::Document) -> Result<Vec<Placed<'_>>, String> {
     let mut open: Vec<(gltf::Node<'_>, DMat4)> = match document.default_scene() {
         Some(scene) => scene.nodes().map(|node| (node, DMat4::IDENTITY)).collect(),
@@ -91,7 +91,8 @@ fn placed_nodes(document: &gltf::Document) -> Result<Vec<Placed<'_>>, String> {
         let world_from_node = world_from_parent * parent_from_node(&node.transform());
         let first_child = open.len();
         open.extend(node.children().map(|child| (child, world_from_node)));
-        // Depth first in file order, so that "the first camera" is what a reader of the file would call so.
+        // The order is depth first as in the file, so that "the first camera" is what a reader of the file would call
+        // so.
         open[first_child..].reverse();
         placed.push(Placed {
             node,
@@ -118,7 +119,7 @@ fn parent_from_node(transform: &gltf::scene::Transform) -> DMat4 {
     }
 }
 
-/// All triangle meshes, and for each glTF mesh the indices of its primitives among them.
+/// Returns all triangle meshes, and for each glTF mesh the indices of its primitives among them.
 fn load_meshes(
     document: &gltf::Document,
     buffers: &[gltf::buffer::Data],
@@ -174,7 +175,7 @@ fn load_materials(document: &gltf::Document) -> Vec<Material> {
             }
         })
         .collect();
-    // What primitives without a material refer to.
+    // Primitives without a material refer to this one.
     materials.push(Material {
         base_color: Vec4::ONE,
         image: None,
@@ -184,7 +185,7 @@ fn load_materials(document: &gltf::Document) -> Vec<Material> {
     materials
 }
 
-/// A box in world space, f64.
+/// Is a box in world space, in f64.
 struct DBounds {
     min: DVec3,
     max: DVec3,
@@ -269,7 +270,7 @@ fn world_instances(
     Ok(instances)
 }
 
-/// The camera of that number, or in a file without cameras one that sees everything from above its corner.
+/// Returns the camera of that number, or in a file without cameras one that sees everything from above its corner.
 fn find_camera(
     placed: &[Placed<'_>],
     number: usize,
@@ -305,7 +306,7 @@ fn find_camera(
     let center = (bounds.min + bounds.max) * 0.5;
     let radius = ((bounds.max - bounds.min).length() * 0.5).max(1e-6);
     let fov_y_radians = 0.8_f32;
-    // The bounding sphere touches the upper and lower edge of the picture.
+    // The bounding sphere touches the upper and lower edge of the image.
     let distance = radius / f64::from(fov_y_radians * 0.5).sin();
     let eye = center + DVec3::new(0.55, 0.5, 0.8).normalize() * distance;
     let lens = Lens::Perspective {
@@ -319,7 +320,7 @@ fn find_camera(
     ))
 }
 
-/// The lights of the file, or one sun.
+/// Returns the lights of the file, or one sun.
 fn find_lights(placed: &[Placed<'_>], origin: DVec3, notes: &mut Vec<String>) -> Vec<Light> {
     let mut lights: Vec<Light> = placed
         .iter()

@@ -9,11 +9,11 @@
 //! load.rs        file to triangles, textures, lights and camera
 //! images.rs      its textures, decoded
 //! primitive.rs   one glTF primitive to a triangle list
-//! scene.rs       what a scene is once it is loaded
+//! scene.rs       a scene once it is loaded
 //! device.rs      adapter, device, read-back
 //! geometry.rs    vertex, index and instance buffers, textures, draw calls
 //! casters.rs     the scene's ShadowCaster
-//! lights.rs      the scene's shadows, and the WGSL that asks them
+//! lights.rs      the scene's shadows, and the WGSL that samples them
 //! render.rs      pipelines and passes
 //! measure.rs     times of the passes
 //! report.rs      the report as JSON

@@ -1,4 +1,4 @@
-//! Times of the shadow passes and of the shading pass over a number of frames.
+//! Measures the times of the shadow passes and of the shading pass over a number of frames.
 
 use std::time::Instant;
 
@@ -13,7 +13,7 @@ use crate::options::Options;
 use crate::render::Renderer;
 use crate::scene::Scene;
 
-/// Milliseconds per frame.
+/// Holds milliseconds per frame.
 pub struct Times {
     timer: &'static str,
     shadow_passes: Vec<f64>,
@@ -30,8 +30,8 @@ impl Times {
     }
 }
 
-/// Renders the frames; the last one stays in the renderer's targets. Every frame draws every map anew, so that there is
-/// something to measure.
+/// Renders the frames; the last one stays in the renderer's targets. Every frame draws every map again, so that there
+/// is something to measure.
 pub fn frames(
     gpu: &Gpu,
     scene: &Scene,
@@ -66,7 +66,7 @@ pub fn frames(
     Ok(times)
 }
 
-/// Median and spread (the middle half of the frames).
+/// Returns the median and the spread (the middle half of the frames).
 fn summary(times: &[f64]) -> Value {
     let mut sorted = times.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -82,7 +82,8 @@ fn summary(times: &[f64]) -> Value {
     })
 }
 
-/// Timestamps around commands where the device has them, the wall clock around submission and completion where not.
+/// Writes timestamps around commands where the device has them, and otherwise uses the wall clock around submission and
+/// completion.
 struct Timer {
     queries: Option<(wgpu::QuerySet, wgpu::Buffer)>,
 }
@@ -106,7 +107,7 @@ impl Timer {
         Self { queries }
     }
 
-    /// Milliseconds that the recorded commands take.
+    /// Returns the milliseconds that the recorded commands take.
     fn time(
         &self,
         gpu: &Gpu,

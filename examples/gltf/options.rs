@@ -1,4 +1,4 @@
-//! The command line.
+//! Defines the command line.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -10,57 +10,60 @@ use wgpu_shadows::{Bias, CascadeSplit, Filter};
 #[derive(Parser, Debug)]
 #[command(name = "gltf")]
 pub struct Options {
-    /// The .glb or .gltf file.
+    /// Names the .glb or .gltf file.
     pub file: PathBuf,
-    /// Where the picture goes.
+    /// Names the file for the image.
     #[arg(long)]
     pub out: Option<PathBuf>,
-    /// Where visibility goes: 8-bit grey, one sample a pixel, of the file's first light.
+    /// Names the file for visibility: 8-bit grey, one sample per pixel, of the file's first light.
     #[arg(long)]
     pub visibility: Option<PathBuf>,
-    /// Where the report goes, as JSON.
+    /// Names the file for the report, as JSON.
     #[arg(long)]
     pub report: Option<PathBuf>,
-    /// Size of the picture in pixels.
+    /// Sets the size of the image in pixels.
     #[arg(long, default_value = "960x540", value_parser = size)]
     pub size: [u32; 2],
-    /// Texels per side of each shadow map [default: 2048; less for spots and points where there are many]
+    /// Sets the texels per side of each shadow map [default: 2048; less for spots and points where there are many]
     #[arg(long)]
     pub map_size: Option<u32>,
-    /// nearest, hardware, box, bilinear, tent3, tent5 or tent7; the gathered ones with an edge sharpness, as in tent3:3.
+    /// Selects nearest, hardware, box, bilinear, tent3, tent5 or tent7; the gathered ones with an edge sharpness, as in
+    /// tent3:3.
     #[arg(long, default_value = "tent3:3", value_parser = filter)]
     pub filter: Filter,
-    /// auto, normal-offset, or manual:CONSTANT,SLOPE in world units.
+    /// Selects auto, normal-offset, or manual:CONSTANT,SLOPE in world units.
     #[arg(long, default_value = "auto", value_parser = bias)]
     pub bias: Bias,
-    /// Cascades of a directional light, 1 to 8.
+    /// Sets the number of cascades of a directional light, 1 to 8.
     #[arg(long, default_value_t = 1)]
     pub cascades: u32,
-    /// Depths along the view at which all cascades but the last end, as in 10,30,80; equal ratios without it.
+    /// Sets the depths along the view at which all cascades but the last end, as in 10,30,80; without it they have
+    /// equal ratios.
     #[arg(long, value_delimiter = ',', num_args = 1..=7)]
     pub splits: Vec<f32>,
-    /// Distance along the view beyond which nothing is shadowed.
+    /// Sets the distance along the view beyond which nothing is shadowed.
     #[arg(long, default_value_t = f32::INFINITY)]
     pub max_distance: f32,
-    /// Angular diameter of directional lights in radians, for soft shadows (the sun's is 0.0093).
+    /// Sets the angular diameter of directional lights in radians, for soft shadows (the sun's is 0.0093).
     #[arg(long, value_parser = positive)]
     pub angular_diameter: Option<f32>,
-    /// Radius of spot and point lights in metres, for soft shadows.
+    /// Sets the radius of spot and point lights in metres, for soft shadows.
     #[arg(long, value_parser = positive)]
     pub light_radius: Option<f32>,
-    /// Leaves shadows out.
+    /// Omits shadows.
     #[arg(long)]
     pub no_shadows: bool,
-    /// Which of wgpu's backends to use; the first that works without it.
+    /// Selects wgpu's backend; without it the first that works is used.
     #[arg(long)]
     pub adapter: Option<Backend>,
-    /// Frames over which times are taken.
+    /// Sets the number of frames over which times are taken.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub frames: u32,
 }
 
 impl Options {
-    /// Where the cascades end; `--splits` is for as many as it says.
+    /// Returns where the cascades end. A number of `--splits` that is not one fewer than `--cascades` is refused by the
+    /// light.
     pub fn split(&self) -> CascadeSplit<'_> {
         if self.splits.is_empty() {
             return CascadeSplit::Logarithmic;
@@ -68,29 +71,29 @@ impl Options {
         CascadeSplit::Explicit { ends: &self.splits }
     }
 
-    /// The filter of directional lights.
+    /// Returns the filter of directional lights.
     pub fn sun_filter(&self) -> Filter {
         self.angular_diameter
             .map_or(self.filter, |light_size| Filter::Pcss { light_size })
     }
 
-    /// The filter of spot and point lights.
+    /// Returns the filter of spot and point lights.
     pub fn local_filter(&self) -> Filter {
         self.light_radius
             .map_or(self.filter, |light_size| Filter::Pcss { light_size })
     }
 }
 
-/// A wgpu backend.
+/// Is a wgpu backend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Backend {
-    /// Vulkan; on machines without a GPU, lavapipe.
+    /// Uses Vulkan; on machines without a GPU, lavapipe.
     Vulkan,
-    /// OpenGL; on machines without a GPU, llvmpipe.
+    /// Uses OpenGL; on machines without a GPU, llvmpipe.
     Gl,
 }
 
-/// The options, or the exit code after one line on stderr.
+/// Returns the options, or the exit code after one line on stderr.
 pub fn parse() -> Result<Options, ExitCode> {
     let options = Options::try_parse().map_err(|error| {
         if error.use_stderr() {

@@ -1,10 +1,10 @@
-//! One glTF primitive to a triangle list.
+//! Converts one glTF primitive to a triangle list.
 
 use gltf::mesh::Mode;
 
 use crate::scene::{Mesh, Vertex};
 
-/// Triangles of `primitive`; a reason where it has none.
+/// Returns the triangles of `primitive`, or the reason why it has none.
 pub fn triangles(
     primitive: &gltf::Primitive<'_>,
     buffers: &[gltf::buffer::Data],

@@ -1,4 +1,4 @@
-//! Pipelines and passes: the picture, and the visibility picture.
+//! Creates the pipelines and records the passes of the image and of the visibility image.
 
 use image::DynamicImage;
 
@@ -11,7 +11,7 @@ const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 const VISIBILITY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 const SAMPLES: u32 = 4;
-/// Linear colour where nothing is.
+/// Is the linear colour where nothing is drawn.
 const SKY: wgpu::Color = wgpu::Color {
     r: 0.35,
     g: 0.48,
@@ -19,7 +19,7 @@ const SKY: wgpu::Color = wgpu::Color {
     a: 1.0,
 };
 
-/// Mirror of `Frame` in `shade.wgsl`.
+/// Mirrors `Frame` in `shade.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct FrameUniform {
@@ -29,7 +29,7 @@ struct FrameUniform {
     padding: [f32; 2],
 }
 
-/// One pipeline per way of winding and culling.
+/// Holds one pipeline per way of winding and culling.
 struct Sided {
     back_culled: wgpu::RenderPipeline,
     back_culled_mirrored: wgpu::RenderPipeline,
@@ -171,7 +171,7 @@ impl Renderer {
         );
     }
 
-    /// Records the picture.
+    /// Records the image.
     pub fn shade(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -205,7 +205,7 @@ impl Renderer {
             .ok_or_else(|| "the picture came back with the wrong size".to_owned())
     }
 
-    /// Visibility of the first light: one sample a pixel, 255 for lit.
+    /// Records the visibility of the first light: one sample per pixel, 255 for lit.
     pub fn visibility(
         &self,
         gpu: &Gpu,
@@ -277,7 +277,7 @@ impl Renderer {
     }
 }
 
-/// `front_face` none: both sides are seen.
+/// Creates a pipeline. With `front_face` `None`, both sides are drawn.
 fn pipeline(
     device: &wgpu::Device,
     layout: &wgpu::PipelineLayout,

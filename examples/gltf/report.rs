@@ -1,4 +1,4 @@
-//! The report of a run, as JSON.
+//! Writes the report of a run, as JSON.
 
 use serde_json::{Value, json};
 use wgpu_shadows::report::ShadowReport;
@@ -8,7 +8,7 @@ use crate::lights::SceneLights;
 use crate::measure::Times;
 use crate::scene::Scene;
 
-/// Scene, adapter, what each set of maps did in the last frame, and times.
+/// Returns scene, adapter, what each set of maps did in the last frame, and times.
 pub fn report(gpu: &Gpu, scene: &Scene, lights: &SceneLights, times: &Times) -> Value {
     let described: Vec<Value> = lights
         .lights

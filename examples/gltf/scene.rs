@@ -1,55 +1,55 @@
-//! What a scene is once it is loaded. World space is f64; render space is world minus the camera's position, f32.
+//! Defines a scene once it is loaded. World space is f64; render space is world minus the camera's position, in f32.
 
 use glam::camera::rh::proj::directx as proj;
 use glam::{DMat4, DVec3, Mat4, Vec3, Vec4};
 use wgpu_shadows::{Aabb, CameraView};
 
-/// A vertex as the shaders read it.
+/// Is a vertex as the shaders read it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Vertex {
-    /// Model space.
+    /// Is in model space.
     pub position: [f32; 3],
-    /// Model space; zero where the file has none, and then the facet's own is used.
+    /// Is in model space; zero where the file has none, in which case the facet's own is used.
     pub normal: [f32; 3],
-    /// Texture coordinates of the base colour.
+    /// Holds the texture coordinates of the base colour.
     pub uv: [f32; 2],
 }
 
-/// A triangle list of one material.
+/// Is a triangle list of one material.
 pub struct Mesh {
     pub vertices: Vec<Vertex>,
     pub indices: Vec<u32>,
     pub material: usize,
 }
 
-/// Base colour and sidedness.
+/// Holds base colour and sidedness.
 #[derive(Clone, Copy)]
 pub struct Material {
     pub base_color: Vec4,
-    /// Index into the scene's images.
+    /// Is the index into the scene's images.
     pub image: Option<usize>,
     pub double_sided: bool,
-    /// Fragments of less alpha are holes; 0 for a solid material.
+    /// Makes fragments of less alpha holes; 0 for a solid material.
     pub alpha_cutoff: f32,
 }
 
-/// RGBA, 8 bits, sRGB.
+/// Is an image in RGBA, 8 bits, sRGB.
 pub struct Picture {
     pub width: u32,
     pub height: u32,
     pub rgba: Vec<u8>,
 }
 
-/// A mesh at a place.
+/// Is a mesh with its transform.
 pub struct Instance {
     pub mesh: usize,
     pub render_from_model: Mat4,
-    /// Exact bounds of the transformed vertices.
+    /// Holds the exact bounds of the transformed vertices.
     pub bounds_render: Aabb,
 }
 
-/// The kinds of `KHR_lights_punctual`.
+/// Lists the kinds of `KHR_lights_punctual`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightKind {
     Directional,
@@ -61,7 +61,7 @@ pub enum LightKind {
 }
 
 impl LightKind {
-    /// Half of the angle that a spot spans, just below a right angle at most.
+    /// Returns half of the angle that a spot light spans, which is slightly below a right angle at most.
     pub fn outer_angle_radians(self) -> f32 {
         match self {
             Self::Spot {
@@ -72,22 +72,22 @@ impl LightKind {
     }
 }
 
-/// A light of the file.
+/// Is a light of the file.
 #[derive(Clone, Copy, Debug)]
 pub struct Light {
     pub kind: LightKind,
-    /// Linear colour times intensity: lux for directional lights, candela for the others.
+    /// Is the linear colour times intensity: lux for directional lights, candela for the others.
     pub intensity: Vec3,
-    /// Direction in which it shines, unit length.
+    /// Is the direction in which it shines, of unit length.
     pub direction: Vec3,
     pub position_render: Vec3,
-    /// Distance beyond which it gives no light; infinite where the file does not say.
+    /// Is the distance beyond which it gives no light; infinite where the file does not state one.
     pub range: f32,
 }
 
-/// A file, ready to be drawn.
+/// Holds a file, ready to be drawn.
 pub struct Scene {
-    /// World position of render space's origin: the camera.
+    /// Is the world position of render space's origin: the camera.
     pub origin: DVec3,
     pub camera: CameraView,
     pub meshes: Vec<Mesh>,
@@ -95,12 +95,12 @@ pub struct Scene {
     pub images: Vec<Picture>,
     pub instances: Vec<Instance>,
     pub lights: Vec<Light>,
-    /// What was left out or made up.
+    /// Lists what was omitted or invented.
     pub notes: Vec<String>,
 }
 
 impl Scene {
-    /// Bounds of everything, render space.
+    /// Returns the bounds of everything, in render space.
     pub fn bounds_render(&self) -> Aabb {
         self.instances.iter().fold(Aabb::EMPTY, |bounds, instance| {
             bounds.union(instance.bounds_render)
@@ -115,7 +115,7 @@ impl Scene {
     }
 }
 
-/// A perspective or orthographic lens, with reversed depth.
+/// Is a perspective or orthographic lens, with reversed depth.
 #[derive(Clone, Copy, Debug)]
 pub enum Lens {
     Perspective {
@@ -131,10 +131,10 @@ pub enum Lens {
 }
 
 impl Lens {
-    /// Clip space (depth 1 near, 0 far) from view space.
+    /// Returns the matrix to clip space (depth 1 near, 0 far) from view space.
     pub fn clip_from_view(&self, aspect: f32) -> Mat4 {
         match *self {
-            // Near and far trade places: that is all there is to reversed depth.
+            // Exchanging near and far reverses the depth.
             Self::Perspective {
                 fov_y_radians,
                 near,
@@ -164,7 +164,7 @@ impl Lens {
     }
 }
 
-/// Camera and render space of a camera that stands at `world_from_view`.
+/// Returns camera and origin of a camera that stands at `world_from_view`.
 pub fn camera_view(world_from_view: &DMat4, lens: &Lens, aspect: f32) -> (DVec3, CameraView) {
     let origin = world_from_view.w_axis.truncate();
     // glTF cameras ignore scale, and view matrices are rigid.

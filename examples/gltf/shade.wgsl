@@ -1,4 +1,5 @@
-// Blinn-Phong with the library's visibility. Put together with the WGSL of ShadowBindings and `visibility_of_light`.
+// Computes Blinn-Phong with the library's visibility. It is put together with the WGSL of ShadowBindings and
+// `visibility_of_light`.
 
 struct Frame {
     clip_from_render: mat4x4<f32>,
@@ -8,15 +9,15 @@ struct Frame {
 
 struct Light {
     intensity: vec3<f32>,
-    // 0 directional, 1 point or spot.
+    // Is 0 for a directional light and 1 for a point or spot light.
     local: u32,
     direction: vec3<f32>,
     range: f32,
     position: vec3<f32>,
-    // Cosine fades from 0 to 1 over the rim of a cone: scale and offset.
+    // Are scale and offset by which the cosine fades from 0 to 1 over the rim of a cone.
     cone_scale: f32,
     cone_offset: f32,
-    // Which maps, counted from 1, and which of their lights; 0 for a light without shadows.
+    // Are the number of its maps, counted from 1, and its index among their lights; 0 maps for a light without shadows.
     maps: u32,
     index: u32,
 }
@@ -50,7 +51,7 @@ fn vertex(
     @location(6) column_w: vec4<f32>,
 ) -> Surface {
     let render_from_model = mat4x4<f32>(column_x, column_y, column_z, column_w);
-    // Normals go through the cofactors, which any scale, uneven or mirrored, leaves right.
+    // Normals are transformed by the cofactors, which are correct for any scale, uneven or mirrored.
     let cofactors = mat3x3<f32>(
         cross(column_y.xyz, column_z.xyz),
         cross(column_z.xyz, column_x.xyz),
@@ -65,7 +66,7 @@ fn vertex(
     return surface;
 }
 
-// Toward the light, and what of its intensity arrives.
+// Holds the direction toward the light, and the part of its intensity that arrives.
 struct Arrival {
     toward_light: vec3<f32>,
     share: f32,
@@ -78,7 +79,8 @@ fn arrival(light: Light, position: vec3<f32>) -> Arrival {
     let to_light = light.position - position;
     let distance_squared = max(dot(to_light, to_light), 1e-12);
     let toward_light = to_light * inverseSqrt(distance_squared);
-    // KHR_lights_punctual: inverse square, windowed by the range; smooth between inner and outer cone.
+    // KHR_lights_punctual specifies this: inverse square, windowed by the range, and smooth between inner and outer
+    // cone.
     let reach = distance_squared / (light.range * light.range);
     let window = clamp(1.0 - reach * reach, 0.0, 1.0);
     let cone = dot(light.direction, -toward_light) * light.cone_scale + light.cone_offset;
@@ -104,7 +106,7 @@ fn shade(surface: Surface) -> @location(0) vec4<f32> {
         normal *= select(-1.0, 1.0, dot(normal, facet) >= 0.0);
     }
     let toward_eye = normalize(-surface.position);
-    // A little sky from above and ground from below.
+    // The ambient light is a little sky from above and ground from below.
     var color = base.rgb * mix(vec3<f32>(0.10, 0.09, 0.08), vec3<f32>(0.20, 0.23, 0.28), normal.y * 0.5 + 0.5);
     for (var i = 0u; i < frame.light_count; i++) {
         let light = lights[i];
@@ -119,7 +121,7 @@ fn shade(surface: Surface) -> @location(0) vec4<f32> {
     return vec4<f32>(color, 1.0);
 }
 
-// Visibility of the first light where the facet faces it and its light arrives; 1 elsewhere.
+// Writes the visibility of the first light where the facet faces it and its light arrives, and 1 elsewhere.
 @fragment
 fn visibility(surface: Surface) -> @location(0) vec4<f32> {
     let alpha = base_color(surface.uv).a;

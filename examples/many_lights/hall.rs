@@ -1,4 +1,5 @@
-//! A hall of 24 by 14 by 6 metres: floor and walls as flat meshes, a ceiling with a skylight, columns, and what stands about.
+//! Builds a hall of 24 by 14 by 6 metres: floor and walls as flat meshes, a ceiling with a skylight, columns, and
+//! objects.
 
 use glam::{Mat4, Quat, Vec3};
 use wgpu_shadows::{
@@ -10,15 +11,15 @@ use wgpu_shadows::{
 use crate::common::camera::Camera;
 use crate::common::mesh::{Instance, Object, Vertex, cube, sphere, square};
 
-/// Half the hall's extent along x and z, and its height.
+/// Are half the hall's extent along x and z, and its height.
 const HALF_LENGTH: f32 = 12.0;
 const HALF_WIDTH: f32 = 7.0;
 const HEIGHT: f32 = 6.0;
 
-/// Half the skylight's extent along x and z.
+/// Is half the skylight's extent along x and z.
 const SKYLIGHT: [f32; 2] = [8.0, 1.6];
 
-/// What is drawn, and the same as casters.
+/// Holds what is drawn, and the same as casters.
 pub struct Hall {
     objects: Vec<Object>,
     casters: Vec<MeshCaster>,
@@ -84,13 +85,14 @@ impl Hall {
         &self.objects
     }
 
-    /// Everything casts, walls and floor too: the library finds for each light what nothing can lie behind.
+    /// Returns everything as casters, walls and floor included: the library finds for each light what nothing can lie
+    /// behind.
     pub fn casters(&self) -> Vec<&dyn ShadowCaster> {
         self.casters.iter().map(|caster| caster as _).collect()
     }
 }
 
-/// From one end, under the ceiling, along the hall.
+/// Returns a camera at one end, under the ceiling, that looks along the hall.
 pub fn camera(size: [u32; 2]) -> Camera {
     Camera::new(
         Vec3::new(11.5, 4.5, 1.9),
@@ -100,7 +102,7 @@ pub fn camera(size: [u32; 2]) -> Camera {
     )
 }
 
-/// Floor and four walls: the direction that each faces, its middle, and half its extent.
+/// Returns floor and four walls: the direction that each faces, its middle, and half its extent.
 fn shell() -> [(Vec3, Vec3, Vec3); 5] {
     let half = Vec3::new(HALF_LENGTH, HEIGHT * 0.5, HALF_WIDTH);
     let middle = Vec3::Y * HEIGHT * 0.5;
@@ -113,8 +115,8 @@ fn shell() -> [(Vec3, Vec3, Vec3); 5] {
     ]
 }
 
-/// Four slabs around the skylight, and beams across it. The eaves keep the sun from the foot of the walls, where these have no
-/// thickness that a texel could hold.
+/// Returns four slabs around the skylight, and beams across it. The eaves keep the sun from the foot of the walls,
+/// where these have no thickness that a texel could resolve.
 fn ceiling() -> Vec<Mat4> {
     let slab = |low: [f32; 2], high: [f32; 2], thickness: f32| {
         let low = Vec3::new(low[0], HEIGHT, low[1]);
@@ -133,7 +135,7 @@ fn ceiling() -> Vec<Mat4> {
     slabs
 }
 
-/// Two rows of five.
+/// Returns two rows of five.
 fn columns() -> impl Iterator<Item = Mat4> {
     let half = Vec3::new(0.32, HEIGHT * 0.5, 0.32);
     [-4.2, 4.2].into_iter().flat_map(move |z| {
@@ -144,7 +146,7 @@ fn columns() -> impl Iterator<Item = Mat4> {
     })
 }
 
-/// Where a crate stands, half its side, and how it is turned.
+/// Lists the position of each crate, half its side, and its rotation.
 const CRATES: [([f32; 3], f32, f32); 10] = [
     ([-2.6, 0.0, 0.4], 0.55, 0.4),
     ([-2.4, 1.1, 0.5], 0.35, 0.9),
@@ -158,7 +160,7 @@ const CRATES: [([f32; 3], f32, f32); 10] = [
     ([-3.9, 0.0, -5.6], 0.60, 0.8),
 ];
 
-/// Where a ball lies, and its radius.
+/// Lists the position of each ball, and its radius.
 const BALLS: [([f32; 3], f32); 6] = [
     ([0.2, 0.0, 1.3], 0.50),
     ([-4.6, 0.0, 1.9], 0.60),

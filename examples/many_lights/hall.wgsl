@@ -1,11 +1,11 @@
-// The hall's fragment stage. `shadow_sun`, `shadow_spots` and `shadow_lamps` are in what is put in front of this text, and
-// Blinn-Phong under the sun, `shade`, is between.
+// Contains the hall's fragment stage. The text before this one defines `shade`, Blinn-Phong under the sun, and the one
+// before that `shadow_sun`, `shadow_spots` and `shadow_lamps`.
 
 struct Light {
     place: vec3<f32>,
     range: f32,
     color: vec3<f32>,
-    // Of a spot's cone; -1 for a lamp.
+    // Is that of a spot light's cone; -1 for a point light.
     cone_cosine: f32,
     direction: vec3<f32>,
 }
@@ -17,13 +17,13 @@ struct Lights {
 
 @group(2) @binding(0) var<uniform> lights: Lights;
 
-// What a light sends to a surface if nothing is between them.
+// Returns what a light sends to a surface if nothing is between them.
 fn unshadowed(light: Light, surface: Surface) -> vec3<f32> {
     let to_light = light.place - surface.position;
     let reached = max(1.0 - dot(to_light, to_light) / (light.range * light.range), 0.0);
     let toward_light = normalize(to_light);
     let facing = max(dot(surface.normal, toward_light), 0.0);
-    // Soft toward the rim of the cone.
+    // The light fades toward the rim of the cone.
     let along = -dot(toward_light, light.direction);
     let inside = smoothstep(light.cone_cosine, light.cone_cosine + 0.06, along);
     let cone = select(inside, 1.0, light.cone_cosine < 0.0);
@@ -33,7 +33,8 @@ fn unshadowed(light: Light, surface: Surface) -> vec3<f32> {
 @fragment
 fn fragment(surface: Surface) -> @location(0) vec4<f32> {
     var color = shade(surface, shadow_sun(surface.position, surface.normal));
-    // A light's number here is its slot in the pool. What does not reach the surface is not asked for its shadow.
+    // A light's number here is its slot in the pool. Where a light does not reach the surface, its shadow is not
+    // sampled.
     for (var i = 0u; i < 4u; i++) {
         let light = unshadowed(lights.spots[i], surface);
         if any(light > vec3<f32>(0.0)) {

@@ -1,4 +1,4 @@
-//! Where the lights are, what they look like, and how some of them move.
+//! Defines where the lights are, what they look like, and how some of them move.
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
@@ -7,23 +7,23 @@ use wgpu_shadows::{OmniLight, SpotLight};
 pub const SPOTS: usize = 4;
 pub const LAMPS: usize = 32;
 
-/// Toward the sun, through the skylight.
+/// Points toward the sun, through the skylight.
 pub const TOWARD_SUN: Vec3 = Vec3::new(0.28, 1.0, 0.22);
 
-/// Mirror of `Light` in `hall.wgsl`.
+/// Mirrors `Light` in `hall.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Default, Pod, Zeroable)]
 pub struct LightUniform {
     place: Vec3,
     range: f32,
     color: Vec3,
-    /// Of a spot's cone; -1 for a lamp.
+    /// Is that of a spot light's cone; -1 for a point light.
     cone_cosine: f32,
     direction: Vec3,
     padding: f32,
 }
 
-/// A spot, and how it looks.
+/// Is a spot light with its appearance.
 #[derive(Clone, Copy)]
 pub struct Spot {
     pub place: Vec3,
@@ -32,7 +32,7 @@ pub struct Spot {
     pub moves: bool,
 }
 
-/// A lamp, and how it looks.
+/// Is a point light with its appearance.
 #[derive(Clone, Copy)]
 pub struct Lamp {
     pub place: Vec3,
@@ -44,14 +44,14 @@ const SPOT_RANGE: f32 = 9.0;
 const SPOT_OUTER_ANGLE_RADIANS: f32 = 0.55;
 const LAMP_RANGE: f32 = 3.6;
 
-/// The lights of a frame.
+/// Holds the lights of a frame.
 pub struct Lights {
     pub spots: [Spot; SPOTS],
     pub lamps: [Lamp; LAMPS],
 }
 
 impl Lights {
-    /// The lights in frame `frame`.
+    /// Returns the lights in frame `frame`.
     pub fn at(frame: u32) -> Self {
         Self {
             spots: std::array::from_fn(|index| spot(index, frame as f32)),
@@ -59,7 +59,7 @@ impl Lights {
         }
     }
 
-    /// What the shader knows of them: spots, then lamps.
+    /// Returns the lights as the shader reads them: spot lights, then point lights.
     pub fn uniforms(&self) -> Vec<LightUniform> {
         let spots = self.spots.iter().map(|spot| LightUniform {
             place: spot.place,
@@ -81,7 +81,7 @@ impl Lights {
 }
 
 impl Spot {
-    /// The light as the library takes it.
+    /// Returns the light as the library takes it.
     pub fn light(&self) -> SpotLight {
         SpotLight {
             position_world: self.place.as_dvec3(),
@@ -93,7 +93,7 @@ impl Spot {
 }
 
 impl Lamp {
-    /// The light as the library takes it.
+    /// Returns the light as the library takes it.
     pub fn light(&self) -> OmniLight {
         OmniLight {
             position_world: self.place.as_dvec3(),
@@ -102,7 +102,7 @@ impl Lamp {
     }
 }
 
-/// Four under the ceiling; the first swings.
+/// Returns one of four under the ceiling; the first swings.
 fn spot(index: usize, time: f32) -> Spot {
     let places = [[-3.4, 2.6], [3.6, -2.7], [-7.6, -2.6], [6.4, 2.7]];
     let targets = [[-2.5, 0.3], [3.0, -0.8], [-6.6, -1.2], [4.6, 0.9]];
@@ -118,7 +118,7 @@ fn spot(index: usize, time: f32) -> Spot {
     }
 }
 
-/// Eight by four in the hall; every sixth goes around in a circle.
+/// Returns one of eight by four in the hall; every sixth moves in a circle.
 fn lamp(index: usize, time: f32) -> Lamp {
     let (column, row) = (index % 8, index / 8);
     let mut place = Vec3::new(

@@ -1,14 +1,15 @@
-//! A hall with a sun, four spots and 32 lamps, all with shadows, in one bind group.
+//! Shows a hall with a sun, four spot lights and 32 point lights, all with shadows, in one bind group.
 //!
-//! `cargo run --example many_lights -- [FOLDER] --frames N` draws N pictures into `target/many_lights` or the folder named, and
-//! prints for each frame what its shadows cost. Five of the lamps and one of the spots move, and a budget of views a frame
-//! refreshes the most important of them first; a light that stands still costs nothing from the second frame on.
+//! `cargo run --example many_lights -- [FOLDER] --frames N` draws N images into `target/many_lights` or the folder
+//! named, and prints for each frame what its shadows cost. Five of the point lights and one of the spot lights move,
+//! and a budget of views per frame refreshes the most important of them first; a light that does not move costs nothing
+//! from the second frame on.
 //!
 //! ```text
-//! hall.rs          floor, walls, skylight, columns, and what stands about
+//! hall.rs          floor, walls, skylight, columns, and objects
 //! lights.rs        where the lights are, and how they move
 //! shadows.rs       the sun, two pools, and one bind group for all of them
-//! painter.rs       the pictures
+//! painter.rs       the images
 //! table.rs         what a frame cost
 //! hall.wgsl        the fragment stage: loops over the lights
 //! ../common        device, meshes and Blinn-Phong
@@ -38,18 +39,19 @@ use shadows::Shadows;
 /// Draws a hall with many lights.
 #[derive(Parser)]
 struct Arguments {
-    /// Folder for the pictures.
+    /// Sets the folder for the images.
     #[arg(default_value = "target/many_lights")]
     folder: PathBuf,
-    /// Pictures of the moving lights.
+    /// Sets the number of images of the moving lights.
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
     frames: u32,
-    /// Most views of lamps drawn in a frame; the first frame, in which all are new, has no limit.
+    /// Sets the largest number of views of point lights drawn in a frame; the first frame, in which all are new, has no
+    /// limit.
     #[arg(long, default_value_t = 12)]
     budget: u32,
 }
 
-/// Width and height of the pictures.
+/// Is the width and height of the images.
 const SIZE: [u32; 2] = [960, 540];
 
 fn main() -> ExitCode {

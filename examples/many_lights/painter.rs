@@ -1,4 +1,4 @@
-//! The pictures of the hall.
+//! Draws the images of the hall.
 
 use std::error::Error;
 
@@ -17,11 +17,11 @@ use crate::shadows::Shadows;
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
-/// Pictures are drawn at twice their size and averaged. Multisampling shades at the centre of a pixel what only a corner of it
-/// shows: at the foot of a wall that is ground outside, in the sun.
+/// Is the size at which images are drawn: twice their own, and then averaged. Multisampling would shade at the centre
+/// of a pixel what only a corner of it shows: at the foot of a wall that is ground outside, in the sun.
 const DRAWN_SIZE: [u32; 2] = [2 * SIZE[0], 2 * SIZE[1]];
 
-/// The pass that draws the hall, and the lights that its fragment stage loops over.
+/// Holds the pass that draws the hall, and the lights that its fragment stage loops over.
 pub struct Painter {
     phong: Phong,
     lights: wgpu::Buffer,
@@ -75,7 +75,7 @@ impl Painter {
         }
     }
 
-    /// Draws the hall after what `encoder` holds, and reads the picture back.
+    /// Draws the hall after the commands of `encoder`, and reads the image back.
     pub fn draw(
         &self,
         gpu: &Gpu,
@@ -102,7 +102,7 @@ impl Painter {
             shadows: shadows.bindings().bind_group(),
             target: &target,
         };
-        // Glowing balls where the lamps are. They cast nothing, for all of their light comes from inside.
+        // These are glowing balls at the point lights. They cast nothing, since all of their light comes from inside.
         let bulbs: Vec<_> = lights
             .lamps
             .iter()

@@ -1,4 +1,4 @@
-//! The sun, a pool of spots, a pool of lamps, and one bind group for all of them.
+//! Owns the sun, a pool of spot lights, a pool of point lights, and one bind group for all of them.
 
 use std::error::Error;
 
@@ -76,7 +76,7 @@ impl Shadows {
         &self.bindings
     }
 
-    /// Depth passes of what has changed; of the lamps no more than `budget` views.
+    /// Records the depth passes of what has changed; of the point lights no more than `budget` views.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -85,7 +85,7 @@ impl Shadows {
         casters: &[&dyn ShadowCaster],
         budget: Option<u32>,
     ) -> Result<(), Box<dyn Error>> {
-        // One frame for all lights: the casters are asked once what they are.
+        // One frame serves all lights: the methods of the casters are called once.
         let frame = self.scene.frame(&ShadowFrameDescriptor {
             origin: DVec3::ZERO,
             coverage: Coverage::Cameras(&[camera.for_shadows()]),
@@ -114,7 +114,7 @@ impl Shadows {
             .map(|(slot, lamp)| PoolLight {
                 slot: *slot,
                 light: lamp.light(),
-                // What is closer fills more of the picture.
+                // What is closer fills more of the image.
                 importance: camera.eye.distance(lamp.place).max(1.0).recip(),
             })
             .collect();
@@ -125,7 +125,8 @@ impl Shadows {
         Ok(())
     }
 
-    /// Each set of maps: its name, its report, views per light, and which of its lights move (none for a sun that does not).
+    /// Returns for each set of maps its name, its report, views per light, and which of its lights move (none for a sun
+    /// that does not).
     pub fn reports(&self) -> [(&str, &ShadowReport, usize, &[bool]); 3] {
         [
             ("sun", self.sun.maps().report(), 1, &[]),

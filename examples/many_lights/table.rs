@@ -1,4 +1,4 @@
-//! What a frame's shadows cost, as a table.
+//! Prints what a frame's shadows cost, as a table.
 
 use std::fmt::Write;
 
@@ -6,8 +6,8 @@ use wgpu_shadows::{report::ShadowReport, report::ViewReport, report::ViewStatus}
 
 use crate::shadows::Shadows;
 
-/// Views by what became of them, passes, draws and bytes: of each set of maps, and of its lights that stand still and that
-/// move.
+/// Returns the number of views by status, passes, draws and bytes, for each set of maps, and for its lights that are
+/// static and that move.
 pub fn of(shadows: &Shadows) -> String {
     let mut table = format!(
         "{:14}{:>7}{:>7}{:>10}{:>7}{:>8}{:>7}{:>12}\n",
@@ -33,7 +33,7 @@ pub fn of(shadows: &Shadows) -> String {
     table
 }
 
-/// The bytes belong to the whole texture. Each view that is drawn is a pass.
+/// Returns a line. The bytes belong to the whole texture. Each view that is drawn is a pass.
 fn line(name: &str, views: &[ViewReport], whole: Option<&ShadowReport>) -> String {
     let count = |status| views.iter().filter(|view| view.status == status).count();
     let drawn = count(ViewStatus::Drawn);

@@ -1,4 +1,4 @@
-//! The lamp's shadows, and the pictures that they are in.
+//! Owns the point light's shadows, and draws the images that they are in.
 
 use std::error::Error;
 
@@ -15,15 +15,15 @@ use crate::common::map_picture;
 use crate::common::phong::{Batch, Lighting, Phong, PhongDescriptor, Picture};
 use crate::room::{self, Room};
 
-/// Texels per side of each face.
+/// Is the number of texels per side of each face.
 pub const MAP_SIZE: u32 = 1024;
 
-/// How far the lamp shines.
+/// Is the distance at which the light ends.
 const RANGE: f32 = 15.0;
 
 const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
-/// A lamp that casts shadows, and the pass that asks for them.
+/// Holds a point light that casts shadows, and the pass that samples them.
 pub struct Lamp {
     shadow_scene: ShadowScene,
     shadow: OmniShadow,
@@ -69,12 +69,12 @@ impl Lamp {
         })
     }
 
-    /// What the last frame cost.
+    /// Returns what the last frame cost.
     pub fn report(&self) -> &ShadowReport {
         self.shadow.maps().report()
     }
 
-    /// The picture of the room with the lamp at `place`: depth passes of what the camera needs, then the scene.
+    /// Draws the image of the room with the light at `place`: depth passes of what the camera needs, then the scene.
     pub fn draw(
         &mut self,
         gpu: &Gpu,
@@ -111,7 +111,7 @@ impl Lamp {
         gpu.read(encoder, &target)
     }
 
-    /// Fills all faces, whoever may look at them.
+    /// Fills all faces, whatever a camera would see of them.
     pub fn record_for_all_of_space(
         &mut self,
         gpu: &Gpu,
@@ -125,7 +125,7 @@ impl Lamp {
         Ok(())
     }
 
-    /// The map as the last frame left it.
+    /// Draws the map as the last frame left it.
     pub fn draw_map(
         &self,
         gpu: &Gpu,

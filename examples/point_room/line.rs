@@ -1,11 +1,11 @@
-//! What a frame cost, in one line.
+//! Prints what a frame cost, in one line.
 
 use wgpu_shadows::{report::ShadowReport, report::ViewStatus};
 
-/// Names of the faces in the order of layers.
+/// Lists the names of the faces in the order of layers.
 const FACES: [&str; 6] = ["+x", "-x", "+y", "-y", "+z", "-z"];
 
-/// Faces drawn, kept and empty, casters in each face, and passes.
+/// Returns faces drawn, kept and empty, casters in each face, and passes.
 pub fn of(report: &ShadowReport) -> String {
     let count = |status| {
         let views = report.views.iter();

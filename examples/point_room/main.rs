@@ -1,13 +1,15 @@
-//! A lamp in a room: the point-shadow chapter of every graphics tutorial, without its seams and without its acne.
+//! Shows a point light in a room: the point-shadow chapter of graphics tutorials, without its seams and without its
+//! acne.
 //!
-//! `cargo run --example point_room -- [FOLDER] --frames N` moves the lamp over N pictures, draws the same moment with the
-//! library's filter and with the two classic ones, and lays the six faces of the lamp's map out flat, into `target/point_room`
-//! or the folder named. The scene is that of <https://learnopengl.com/Advanced-Lighting/Shadows/Point-Shadows>: a room of ten
-//! by ten by ten metres with five cubes in it.
+//! `cargo run --example point_room -- [FOLDER] --frames N` moves the light over N images, draws the same moment with
+//! the library's filter and with the two classic ones, and lays the six faces of the light's map out flat, into
+//! `target/point_room` or the folder named. The scene is that of
+//! <https://learnopengl.com/Advanced-Lighting/Shadows/Point-Shadows>: a room of ten by ten by ten metres with five
+//! cubes in it.
 //!
 //! ```text
-//! room.rs          walls, cubes, and where the lamp hangs
-//! lamp.rs          the lamp's shadows, and the pictures that they are in
+//! room.rs          walls, cubes, and where the light hangs
+//! lamp.rs          the light's shadows, and the images that they are in
 //! line.rs          what a frame cost, in one line
 //! room.wgsl        the fragment stage
 //! ../common        device, meshes and Blinn-Phong
@@ -32,21 +34,21 @@ use common::{arguments, picture};
 use lamp::Lamp;
 use room::Room;
 
-/// Draws a room with a lamp that moves.
+/// Draws a room with a point light that moves.
 #[derive(Parser)]
 struct Arguments {
-    /// Folder for the pictures.
+    /// Sets the folder for the images.
     #[arg(default_value = "target/point_room")]
     folder: PathBuf,
-    /// Pictures of the moving lamp.
+    /// Sets the number of images of the moving light.
     #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=1000))]
     frames: u32,
 }
 
-/// Width and height of the pictures.
+/// Is the width and height of the images.
 const SIZE: [u32; 2] = [960, 540];
 
-/// Texels per side of a face in the cross.
+/// Is the number of texels per side of a face in the cross.
 const CROSS_CELL: u32 = 256;
 
 fn main() -> ExitCode {

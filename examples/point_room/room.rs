@@ -1,4 +1,4 @@
-//! A room of ten metres, five cubes in it, and where the lamp hangs.
+//! Builds a room of ten metres with five cubes in it, and moves the light.
 
 use std::f32::consts::PI;
 
@@ -12,10 +12,10 @@ use wgpu_shadows::{
 use crate::common::camera::Camera;
 use crate::common::mesh::{Instance, Object, Vertex, cube, inside_out, sphere};
 
-/// Half the side of the room.
+/// Is half the side of the room.
 const HALF: f32 = 5.0;
 
-/// Walls, cubes and what of them casts.
+/// Holds walls and cubes, and which of them cast.
 pub struct Room {
     walls: Object,
     cubes: Vec<Object>,
@@ -64,25 +64,25 @@ impl Room {
         })
     }
 
-    /// Everything that is drawn but the lamp.
+    /// Returns everything that is drawn except the light.
     pub fn objects(&self) -> impl Iterator<Item = &Object> {
         std::iter::once(&self.walls).chain(&self.cubes)
     }
 
-    /// The cubes as casters.
+    /// Returns the cubes as casters.
     pub fn cubes(&self) -> Vec<&dyn ShadowCaster> {
         self.casters.iter().map(|caster| caster as _).collect()
     }
 
-    /// Cubes and walls as casters. There is nothing behind the walls, so that they need not cast; here they do, to be seen
-    /// in the map.
+    /// Returns cubes and walls as casters. Nothing lies behind the walls, so that they need not cast; here they do, to
+    /// be seen in the map.
     pub fn cubes_and_walls(&self) -> Vec<&dyn ShadowCaster> {
         let mut casters = self.cubes();
         casters.push(&self.wall_caster);
         casters
     }
 
-    /// The walls as boxes of no thickness, for they receive.
+    /// Returns the walls as boxes without thickness, since they receive.
     pub fn walls(&self) -> [Aabb; 6] {
         [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z].map(|out| {
             let along = (Vec3::ONE - out.abs()) * HALF;
@@ -91,23 +91,24 @@ impl Room {
     }
 }
 
-/// From a corner, across the room.
+/// Returns a camera in a corner that looks across the room.
 pub fn camera(size: [u32; 2]) -> Camera {
     let eye = Vec3::new(4.6, -0.4, 4.8);
     Camera::new(eye, Vec3::new(-1.2, -0.6, -1.8), 1.3, size)
 }
 
-/// Where the lamp hangs in frame `index` of `count`: half a swing of the tutorial's, along z through the middle.
+/// Returns the position of the light in frame `index` of `count`: half a swing of the tutorial's, along z through the
+/// middle.
 pub fn lamp_place(index: u32, count: u32) -> Vec3 {
     let share = (index as f32 + 0.5) / count as f32;
     Vec3::new(0.0, 0.0, 3.0 * (PI * (share - 0.5)).sin())
 }
 
-/// A glowing ball where the lamp is. It casts nothing, for all of its light comes from inside.
+/// Returns a glowing ball at the light. It casts nothing, since all of its light comes from inside.
 pub fn bulb(device: &wgpu::Device, place: Vec3) -> Object {
     let instance = Instance {
         render_from_model: Mat4::from_translation(place) * Mat4::from_scale(Vec3::splat(0.08)),
-        // The lamp does not reach its outside; this makes the ambient light on it white.
+        // The light does not reach its outside; this makes the ambient light on it white.
         albedo: Vec3::splat(20.0),
         checker: 0.0,
     };

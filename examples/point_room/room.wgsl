@@ -1,4 +1,5 @@
-// The room's fragment stage. `shadow_lamp` is what is put in front of this text, and Blinn-Phong what is between.
+// Contains the room's fragment stage. The text before this one defines Blinn-Phong, and the one before that
+// `shadow_lamp`.
 
 @fragment
 fn fragment(surface: Surface) -> @location(0) vec4<f32> {

@@ -1,13 +1,14 @@
-//! How the scene's shader asks for visibility: `shadow_sun(position, normal)`, its bind group, and who wrote it.
+//! Provides `shadow_sun(position, normal)` for the scene's shader, with its bind group: that of the library or that of
+//! the tutorial.
 
 use wgpu_shadows::{
     DirectionalShadow, ShadowBindings, ShadowBindingsDescriptor, error::BindingsError, shader,
 };
 
-/// Index of the bind group that `shadow_sun` reads.
+/// Is the index of the bind group that `shadow_sun` reads.
 pub const GROUP: u32 = 1;
 
-/// WGSL with a function `shadow_sun`, and what it reads.
+/// Holds WGSL with a function `shadow_sun`, and what it reads.
 pub struct Lookup {
     pub wgsl: String,
     pub layout: wgpu::BindGroupLayout,
@@ -15,7 +16,7 @@ pub struct Lookup {
 }
 
 impl Lookup {
-    /// The library's function: filter and bias of the light, and lit wherever the map says nothing.
+    /// Returns the library's function: filter and bias of the light, and lit wherever no map covers the position.
     pub fn by_the_library(
         device: &wgpu::Device,
         sun: &DirectionalShadow,
@@ -35,8 +36,8 @@ impl Lookup {
         })
     }
 
-    /// The textbook's function with its mistake. It shows, too, how an engine uses the library's WGSL modules in a bind group
-    /// of its own: all that they need is the light's uniform buffer, its map and a sampler.
+    /// Returns the tutorial's function with its mistake. It also shows how an engine uses the library's WGSL modules in
+    /// a bind group of its own: all that they need is the light's uniform buffer, its map and a sampler.
     pub fn by_mistake(
         device: &wgpu::Device,
         sun: &DirectionalShadow,
@@ -62,7 +63,7 @@ impl Lookup {
             label: Some("out of range"),
             entries: &[entry(0, view), entry(1, map), entry(2, sampler)],
         });
-        // Reversed depth: lit where the receiver is at least as near as what the map holds.
+        // Depth is reversed: a receiver is lit where it is at least as near as the depth in the map.
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("out of range"),
             address_mode_u: wgpu::AddressMode::ClampToEdge,

@@ -1,18 +1,19 @@
-//! The shadow-mapping chapter of every graphics textbook, step by step: each mistake, its remedy, and a figure that proves it.
+//! Shows the shadow-mapping chapter of graphics tutorials step by step: each mistake, its remedy, and a figure that
+//! proves it.
 //!
-//! `cargo run --example textbook [FOLDER]` draws one picture per step into `target/textbook`, or the folder named. The scene
-//! is that of <https://learnopengl.com/Advanced-Lighting/Shadows/Shadow-Mapping>: a floor, three cubes and a sun.
+//! `cargo run --example textbook [FOLDER]` draws one image per step into `target/textbook`, or the folder named. The
+//! scene is that of <https://learnopengl.com/Advanced-Lighting/Shadows/Shadow-Mapping>: a floor, three cubes and a sun.
 //!
 //! ```text
-//! steps.rs            what each step does, and what one sees
+//! steps.rs            what each step does, and what it shows
 //! scene.rs            floor, cubes and sun
-//! viewpoint.rs        where they are looked at from
-//! lookup.rs           how the shader asks for visibility: by the library, or by the textbook's mistake
+//! viewpoint.rs        the cameras
+//! lookup.rs           how the shader samples visibility: by the library, or with the tutorial's mistake
 //! painter.rs          the passes that draw the scene
 //! rays.rs             the scene as rays see it, on the CPU
-//! truth.rs            how far a picture is from what is truly lit
+//! truth.rs            how far an image is from what is truly lit
 //! scene.wgsl          the fragment stages
-//! out_of_range.wgsl   the textbook's mistake
+//! out_of_range.wgsl   the tutorial's mistake
 //! ../common           device, meshes and Blinn-Phong
 //! ```
 
@@ -43,10 +44,10 @@ use scene::Scene;
 use steps::{Show, Step};
 use truth::Truth;
 
-/// Draws the steps of the shadow-mapping tutorial, one picture each.
+/// Draws the steps of the shadow-mapping tutorial, one image each.
 #[derive(Parser)]
 struct Arguments {
-    /// Folder for the pictures.
+    /// Sets the folder for the images.
     #[arg(default_value = "target/textbook")]
     folder: PathBuf,
 }
@@ -74,7 +75,7 @@ fn run(folder: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Draws the picture of `step` and says how far it is from the truth.
+/// Draws the image of `step` and returns how far it is from the truth.
 fn draw(gpu: &Gpu, scene: &Scene, step: &Step, path: &Path) -> Result<String, Box<dyn Error>> {
     let camera = step.viewpoint.camera(painter::SIZE);
     let meshes = scene.casters(&gpu.device, step.cull)?;
@@ -101,7 +102,7 @@ fn draw(gpu: &Gpu, scene: &Scene, step: &Step, path: &Path) -> Result<String, Bo
     Ok(truth.compare(&painted.visibility).to_string())
 }
 
-/// Draws the map of `sun`, one pixel a texel.
+/// Draws the map of `sun`, one pixel per texel.
 fn draw_map(
     gpu: &Gpu,
     scene: &Scene,

@@ -1,6 +1,6 @@
-// The textbook's lookup, with the textbook's mistake: it never asks whether the map knows anything of the place.
+// Samples as the tutorial does, with the tutorial's mistake: it never tests whether the map covers the position.
 //
-// Stands where the library's own `shadow_sun` stands otherwise. Requires: bias_manual.
+// It replaces the library's own `shadow_sun`. Requires: bias_manual.
 
 @group(1) @binding(0) var<uniform> sun_view: ShadowViewUniform;
 @group(1) @binding(1) var sun_map: texture_depth_2d_array;
@@ -8,8 +8,9 @@
 
 fn shadow_sun(position: vec3<f32>, normal: vec3<f32>) -> f32 {
     let receiver = shadow_receiver_manual(sun_view, position, normal);
-    // Beyond the map's sides the sampler takes the texel at the edge. Beyond its far plane the receiver's depth is below all
-    // that a map can hold, so that whatever it holds seems to lie in front. `receiver.inside` would tell, and is not asked.
+    // Beyond the map's sides the sampler reads the texel at the edge. Beyond its far plane the receiver's depth is
+    // below every depth that a map can contain, so that whatever it contains seems to lie in front. `receiver.inside`
+    // would be false there, and is not tested.
     let uv = receiver.texel / receiver.map_size;
     return textureSampleCompareLevel(sun_map, clamping_sampler, uv, receiver.layer, receiver.depth);
 }

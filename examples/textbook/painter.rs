@@ -1,4 +1,5 @@
-//! The engine's passes: the picture with four samples a pixel, and the visibility alone with one, for measuring.
+//! Records the engine's passes: the image with four samples per pixel, and the visibility alone with one, for
+//! measuring.
 
 use std::error::Error;
 
@@ -10,10 +11,10 @@ use crate::common::phong::{Batch, Lighting, Phong, PhongDescriptor, Picture};
 use crate::lookup::{GROUP, Lookup};
 use crate::scene::Scene;
 
-/// Width and height of the pictures.
+/// Is the width and height of the images.
 pub const SIZE: [u32; 2] = [960, 540];
 
-/// What a pass draws.
+/// Is what a pass draws.
 struct Output {
     fragment_entry: &'static str,
     format: wgpu::TextureFormat,
@@ -32,15 +33,15 @@ const VISIBILITY: Output = Output {
     sample_count: 1,
 };
 
-/// The scene as drawn with one lookup.
+/// Holds the scene as drawn with one lookup.
 pub struct Painted {
-    /// Row by row, four bytes a pixel.
+    /// Is stored row by row, four bytes per pixel.
     pub picture: Vec<u8>,
-    /// Row by row, one value a pixel, at its centre, to 1/255.
+    /// Is stored row by row, one value per pixel, at its centre, to 1/255.
     pub visibility: Vec<f32>,
 }
 
-/// Draws the scene as `camera` sees it, after what `encoder` holds, submits, and reads both outputs back.
+/// Draws the scene as `camera` sees it, after the commands of `encoder`, submits, and reads both outputs back.
 pub fn paint(
     gpu: &Gpu,
     scene: &Scene,

@@ -1,26 +1,26 @@
-//! The scene as rays see it: three boxes and a floor, in double precision.
+//! Holds the scene as rays see it: three boxes and a floor, in double precision.
 
 use glam::{DMat4, DVec3};
 
 use crate::common::mesh::Object;
 use crate::scene::Scene;
 
-/// A way through the scene: `origin + t * direction`.
+/// Is a ray through the scene: `origin + t * direction`.
 #[derive(Clone, Copy)]
 pub struct Ray {
     pub origin: DVec3,
     pub direction: DVec3,
 }
 
-/// Where a ray first meets a surface.
+/// Is the point where a ray first meets a surface.
 pub struct Hit {
     pub t: f64,
     pub normal: DVec3,
-    /// Which cube; none for the floor.
+    /// Is the index of the cube; `None` for the floor.
     pub cube: Option<usize>,
 }
 
-/// Floor and cubes.
+/// Holds floor and cubes.
 pub struct World {
     floor: DMat4,
     cubes: Vec<DMat4>,
@@ -35,7 +35,7 @@ impl World {
         }
     }
 
-    /// The first surface along `ray`, which starts outside all cubes and above the floor.
+    /// Returns the first surface along `ray`, which starts outside all cubes and above the floor.
     pub fn first_hit(&self, ray: Ray) -> Option<Hit> {
         let cubes = self.cubes.iter().enumerate();
         cubes
@@ -44,8 +44,8 @@ impl World {
             .min_by(|one, other| one.t.total_cmp(&other.t))
     }
 
-    /// Does a cube other than `own` stand in the way of `ray`? A convex body does not shadow the side that it turns to the
-    /// light, and the floor is below everything.
+    /// Returns whether a cube other than `own` blocks `ray`. A convex body does not shadow the side that it turns to
+    /// the light, and the floor is below everything.
     pub fn is_blocked(&self, ray: Ray, own: Option<usize>) -> bool {
         let cubes = self.cubes.iter().enumerate();
         cubes
@@ -54,7 +54,8 @@ impl World {
     }
 }
 
-/// The slab method: a ray is inside the cube from -1 to 1 where it is between all three pairs of opposite sides.
+/// Intersects by the slab method: a ray is inside the cube from -1 to 1 where it is between all three pairs of opposite
+/// sides.
 fn enter_cube(render_from_model: &DMat4, index: usize, ray: Ray) -> Option<Hit> {
     let model_from_render = render_from_model.inverse();
     let origin = model_from_render.transform_point3(ray.origin);
@@ -74,7 +75,7 @@ fn enter_cube(render_from_model: &DMat4, index: usize, ray: Ray) -> Option<Hit> 
     })
 }
 
-/// The square from -1 to 1 at height 0, from above.
+/// Intersects the square from -1 to 1 at height 0, from above.
 fn meet_floor(render_from_model: &DMat4, ray: Ray) -> Option<Hit> {
     let model_from_render = render_from_model.inverse();
     let origin = model_from_render.transform_point3(ray.origin);

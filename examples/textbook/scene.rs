@@ -1,4 +1,4 @@
-//! The tutorial's scene: a floor of 50 by 50, three cubes, and a sun that shines from (-2, 4, -1) to the origin.
+//! Builds the tutorial's scene: a floor of 50 by 50, three cubes, and a sun that shines from (-2, 4, -1) to the origin.
 
 use glam::{Mat4, Quat, Vec3};
 use wgpu_shadows::{
@@ -9,17 +9,17 @@ use wgpu_shadows::{
 
 use crate::common::mesh::{Instance, Object, Vertex, cube, square};
 
-/// What a step's map covers.
+/// Selects what a step's map covers.
 #[derive(Clone, Copy)]
 pub enum MapRegion {
-    /// A box around the cubes, the same for every camera, as the tutorial has it.
+    /// Covers a box around the cubes, the same for every camera, as in the tutorial.
     FixedBox,
-    /// What the camera sees of the shadows.
+    /// Covers what the camera sees of the shadows.
     Camera,
 }
 
 impl MapRegion {
-    /// The region as the library takes it.
+    /// Returns the region as the library takes it.
     pub fn coverage(self, cameras: &[CameraView]) -> Coverage<'_> {
         match self {
             Self::FixedBox => Coverage::Bounds(FIXED_BOX),
@@ -28,11 +28,11 @@ impl MapRegion {
     }
 }
 
-/// The fixed box. It reaches below the floor, so that the floor is drawn into the map, and a little beyond the cubes' shadows:
-/// the map's far plane then cuts the floor in sight of the camera, about where the tutorial's cuts it.
+/// Is the fixed box. It extends below the floor, so that the floor is drawn into the map, and a little beyond the
+/// cubes' shadows. The map's far plane then cuts the floor in sight of the camera, about where the tutorial's does.
 const FIXED_BOX: Aabb = Aabb::new(Vec3::new(-9.0, -0.6, -9.0), Vec3::new(3.2, 2.2, 2.6));
 
-/// Floor, cubes and sun.
+/// Holds floor, cubes and sun.
 pub struct Scene {
     pub floor: Object,
     pub cubes: [Object; 3],
@@ -76,13 +76,13 @@ impl Scene {
         }
     }
 
-    /// Floor and cubes.
+    /// Returns floor and cubes.
     pub fn objects(&self) -> impl Iterator<Item = &Object> {
         std::iter::once(&self.floor).chain(&self.cubes)
     }
 
-    /// All objects as casters. Faces of the kind `cull` are left out of the map: the floor, which has no back, is left out
-    /// altogether where fronts are.
+    /// Returns all objects as casters. Faces of the kind `cull` are left out of the map: the floor, which has no back,
+    /// is left out completely where fronts are culled.
     pub fn casters(
         &self,
         device: &wgpu::Device,
@@ -120,7 +120,7 @@ impl Scene {
             .collect()
     }
 
-    /// The sun as the library takes it.
+    /// Returns the sun as the library takes it.
     pub fn sun(&self) -> DirectionalLight {
         DirectionalLight::new(-self.toward_light)
     }

@@ -1,42 +1,42 @@
-//! The steps: what each changes in the textbook's set-up, and what one sees.
+//! Defines the steps: what each changes in the tutorial's set-up, and what it shows.
 
 use wgpu_shadows::{Bias, CascadeSplit, DirectionalShadowDescriptor, Filter};
 
 use crate::scene::MapRegion;
 use crate::viewpoint::Viewpoint;
 
-/// Texels per side, as in the tutorial.
+/// Is the number of texels per side, as in the tutorial.
 const MAP_SIZE: u32 = 1024;
 
-/// What a step draws.
+/// Selects what a step draws.
 #[derive(Clone, Copy)]
 pub enum Show {
-    /// The scene, with the library's lookup.
+    /// Draws the scene, with the library's lookup.
     Scene,
-    /// The scene, with a lookup that does not ask whether the map reaches that far.
+    /// Draws the scene, with a lookup that does not test whether the map covers the position.
     OutOfRangeMistake,
-    /// The map itself.
+    /// Draws the map itself.
     DepthMap,
 }
 
-/// One picture.
+/// Is one image.
 pub struct Step {
     pub file: &'static str,
-    /// What to see.
+    /// States what the image shows.
     pub sentence: &'static str,
     pub shadow: DirectionalShadowDescriptor<'static>,
-    /// Faces left out of the map.
+    /// Selects the faces left out of the map.
     pub cull: Option<wgpu::Face>,
     pub region: MapRegion,
     pub viewpoint: Viewpoint,
     pub show: Show,
 }
 
-/// The tutorial's bias of 0.005 and 0.05, there in units of a depth range of 6.5.
+/// Is the tutorial's bias of 0.005 and 0.05, which is there in units of a depth range of 6.5.
 const TUTORIAL_CONSTANT: f32 = 0.005 * 6.5;
 const TUTORIAL_SLOPE: f32 = 0.05 * 6.5;
 
-/// A textbook step, hard-edged, with a manual bias.
+/// Returns a step of the tutorial, hard-edged, with a manual bias.
 const fn textbook(file: &'static str, sentence: &'static str, constant: f32, slope: f32) -> Step {
     Step {
         file,
@@ -57,7 +57,7 @@ const fn textbook(file: &'static str, sentence: &'static str, constant: f32, slo
     }
 }
 
-/// All of them, in order.
+/// Returns all steps, in order.
 pub fn steps() -> Vec<Step> {
     let slope_bias = |file, sentence| textbook(file, sentence, TUTORIAL_CONSTANT, TUTORIAL_SLOPE);
     let boxed = |step: Step| Step {

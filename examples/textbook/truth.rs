@@ -1,4 +1,4 @@
-//! How far a picture is from what is truly lit.
+//! Measures how far an image is from what is truly lit.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -10,26 +10,26 @@ use crate::common::camera::Camera;
 use crate::rays::{Ray, World};
 use crate::scene::Scene;
 
-/// What is truly lit at the centre of each pixel.
+/// Holds what is truly lit at the centre of each pixel.
 pub struct Truth {
-    /// Row by row; none where there is no surface, or one that turns its back to the light.
+    /// Is stored row by row; `None` where there is no surface, or one that faces away from the light.
     lit: Vec<Option<bool>>,
 }
 
-/// How a visibility differs from the truth.
+/// Holds how a visibility differs from the truth.
 pub struct Difference {
-    /// Share of the lit surface that is drawn in shadow.
+    /// Is the fraction of the lit surface that is drawn in shadow.
     false_shadow: f64,
-    /// Share of the shadowed surface that is drawn lit.
+    /// Is the fraction of the shadowed surface that is drawn lit.
     false_light: f64,
-    /// Root of the mean squared error of the visibility.
+    /// Is the root of the mean squared error of the visibility.
     rms: f64,
-    /// How many values the visibility takes.
+    /// Is the number of different values that the visibility takes.
     levels: usize,
 }
 
 impl Truth {
-    /// Casts a ray through each pixel, and on to the light.
+    /// Casts a ray through each pixel, and from there to the light.
     pub fn new(scene: &Scene, camera: &Camera, size: [u32; 2]) -> Self {
         let world = World::new(scene);
         let eye = camera.eye.as_dvec3();
@@ -84,8 +84,8 @@ impl Truth {
     }
 }
 
-/// Share of the texels of `view` whose grey level is more than one level off the depth that a ray from the light finds.
-/// `pixels` is the map as a picture of one pixel a texel: four bytes each, all grey.
+/// Returns the fraction of the texels of `view` whose grey level is more than one level off the depth that a ray from
+/// the light finds. `pixels` is the map as an image of one pixel per texel: four bytes each, all grey.
 pub fn compare_map(scene: &Scene, view: &ShadowView, pixels: &[u8]) -> f64 {
     let world = World::new(scene);
     let render_from_clip = inverse(view.clip_from_render());
@@ -120,7 +120,7 @@ impl fmt::Display for Difference {
     }
 }
 
-/// Centres of the pixels of a picture, row by row from the top, at depth 0.
+/// Returns the centres of the pixels of an image, row by row from the top, at depth 0.
 fn centers_ndc([width, height]: [u32; 2]) -> impl Iterator<Item = DVec3> {
     (0..width * height).map(move |index| {
         let x = (f64::from(index % width) + 0.5) / f64::from(width);

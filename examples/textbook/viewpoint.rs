@@ -1,20 +1,20 @@
-//! Where the scene is looked at from.
+//! Defines the cameras.
 
 use glam::Vec3;
 
 use crate::common::camera::Camera;
 
-/// A place to look from.
+/// Selects a camera.
 #[derive(Clone, Copy)]
 pub enum Viewpoint {
-    /// Close to the cubes.
+    /// Is close to the cubes.
     Close,
-    /// From afar, with the map's ends in sight.
+    /// Is far away, with the map's ends in sight.
     Wide,
 }
 
 impl Viewpoint {
-    /// For pictures of `size` pixels.
+    /// Returns the camera for images of `size` pixels.
     pub fn camera(self, size: [u32; 2]) -> Camera {
         let (eye, target) = match self {
             Self::Close => (Vec3::new(5.8, 3.1, -3.8), Vec3::new(0.75, 0.45, 0.75)),

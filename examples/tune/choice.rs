@@ -1,26 +1,27 @@
-//! Which configuration to take.
+//! Chooses a configuration.
 
 use crate::contest;
 use crate::paste;
 use crate::support::measure::Sample;
 use crate::support::scene::Light;
 
-/// Errors this much above the least count as good as the least: a smaller difference is not worth paying for.
+/// Is the factor by which errors may exceed the least and still count as good: a smaller difference is not worth its
+/// cost.
 const TOLERANCE: f64 = 1.1;
 
-/// What is recommended, and what it is held against.
+/// Holds what is recommended, and what it is compared with.
 pub struct Choice<'a> {
-    /// The library's default.
+    /// Is the library's default.
     pub default: &'a Sample,
-    /// For the work that may be spent.
+    /// Is the choice for the work that may be spent.
     pub within_work: &'a Sample,
-    /// Whatever the work.
+    /// Is the choice whatever the work.
     pub accurate: &'a Sample,
     work: f32,
 }
 
 impl<'a> Choice<'a> {
-    /// Among what was measured, for `work` times the work of the library's default.
+    /// Chooses among what was measured, for `work` times the work of the library's default.
     pub fn of(samples: &'a [Sample], work: f32) -> Result<Self, String> {
         let default = samples
             .iter()
@@ -69,7 +70,8 @@ impl<'a> Choice<'a> {
     }
 }
 
-/// The cheapest whose error is within the tolerance of the least that `most_work` can buy; the library's only.
+/// Returns the cheapest whose error is within the tolerance of the least that `most_work` can buy, of the library's
+/// configurations only.
 fn cheapest_of_the_best(samples: &[Sample], most_work: f64) -> Option<&Sample> {
     let affordable = || {
         samples.iter().filter(|sample| {

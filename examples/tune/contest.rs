@@ -1,4 +1,4 @@
-//! Every configuration, measured on one scene.
+//! Measures every configuration on one scene.
 
 use std::error::Error;
 
@@ -12,10 +12,10 @@ use crate::support::parallel;
 use crate::support::probe::Prober;
 use crate::support::scene::{Light, Scene};
 
-/// Timed runs of each configuration, each next to one of the textbook's.
+/// Is the number of timed runs of each configuration, each next to one of the tutorial's.
 const REPEATS: u32 = 3;
 
-/// The library's default, as it is named here.
+/// Returns the library's default, as it is named here.
 pub fn default() -> Configuration {
     Configuration {
         cascades: Some(1),
@@ -23,7 +23,7 @@ pub fn default() -> Configuration {
     }
 }
 
-/// Measures every filter with every map size and, for suns, number of cascades; and the textbook.
+/// Measures every filter with every map size and, for suns, number of cascades; and the tutorial's method.
 pub fn measure(
     subject: &Subject<'_>,
     prober: &mut Prober<'_>,

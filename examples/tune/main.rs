@@ -1,19 +1,19 @@
-//! Which filter, map size and number of cascades suit a scene of your own: measured against ray-traced truth.
+//! Finds which filter, map size and number of cascades suit a scene of your own, measured against ray-traced truth.
 //!
 //! ```text
 //! cargo run --release --example tune -- FILE.glb
 //! ```
-//! casts rays through the file's triangles in double precision, shadows one of its lights with every configuration, and prints
-//! what each costs and how far it errs, the Pareto front of the two, and the descriptor to paste. Table, chart and picture go to
-//! `target/tune`. Without a file, boxes under a sun are measured.
+//! casts rays through the file's triangles in double precision, shadows one of its lights with every configuration, and
+//! prints what each costs and how far it errs, the Pareto front of the two, and the descriptor to paste. Table, chart
+//! and image go to `target/tune`. Without a file, boxes under a sun are measured.
 //!
 //! ```text
 //! options.rs           the command line
-//! subject.rs           the file's triangles, light and camera as a scene to measure on
+//! subject.rs           the file's triangles, light and camera as a scene to measure
 //! contest.rs           every configuration, measured
 //! choice.rs            which to take
 //! paste.rs             its Rust
-//! table.rs             all of them as a table, CSV, chart and picture
+//! table.rs             all of them as a table, CSV, chart and image
 //! ../gltf              loads the file
 //! ../../benches/support    casts rays, measures, draws charts
 //! ```
@@ -55,7 +55,7 @@ fn main() -> ExitCode {
 
 fn run(options: Options) -> Result<(), Box<dyn Error>> {
     let scene = subject::scene(&options)?;
-    // Before the long work, so that a wrong folder does not cost it.
+    // This comes before the long work, so that a wrong folder does not cost it.
     std::fs::create_dir_all(&options.out)
         .map_err(|error| format!("cannot make {}: {error}", options.out.display()))?;
     let gpu = Gpu::new()?;

@@ -1,4 +1,4 @@
-//! The command line.
+//! Defines the command line.
 
 use std::path::PathBuf;
 
@@ -10,45 +10,45 @@ use crate::support::pixels::Effort;
 #[derive(Parser, Debug)]
 #[command(name = "tune")]
 pub struct Options {
-    /// A .glb or .gltf file; boxes under a sun without one.
+    /// Names a .glb or .gltf file; without it, boxes under a sun are measured.
     pub file: Option<PathBuf>,
-    /// Which of the file's lights, in the order of its nodes, counted from 0.
+    /// Selects one of the file's lights, in the order of its nodes, counted from 0.
     #[arg(long, default_value_t = 0)]
     pub light: usize,
-    /// Which of the file's cameras, in the order of its nodes, counted from 0; one is made up for a file that has none.
+    /// Selects one of the file's cameras, in the order of its nodes, counted from 0; a file without cameras gets one.
     #[arg(long, default_value_t = 0)]
     pub camera: usize,
-    /// Angular diameter of a sun in radians, for soft shadows (the sun's is 0.0093).
+    /// Sets the angular diameter of a sun in radians, for soft shadows (the sun's is 0.0093).
     #[arg(long, value_parser = positive)]
     pub angular_diameter: Option<f32>,
-    /// Radius of a spot or point light in the file's units, for soft shadows.
+    /// Sets the radius of a spot or point light in the file's units, for soft shadows.
     #[arg(long, value_parser = positive)]
     pub light_radius: Option<f32>,
-    /// Most work that a frame may take, as a multiple of that of the library's default.
+    /// Sets the most work that a frame may take, as a multiple of that of the library's default.
     #[arg(long, default_value_t = 1.0, value_parser = positive)]
     pub work: f32,
-    /// Width of the picture in whose pixels errors are measured.
+    /// Sets the width of the image in whose pixels errors are measured.
     #[arg(long, default_value_t = 480, value_parser = clap::value_parser!(u32).range(16..=1920))]
     pub width: u32,
-    /// Its height.
+    /// Sets its height.
     #[arg(long, default_value_t = 270, value_parser = clap::value_parser!(u32).range(16..=1200))]
     pub height: u32,
-    /// A third of the configurations and a quarter of the pixels.
+    /// Measures a third of the configurations and a quarter of the pixels.
     #[arg(long)]
     pub quick: bool,
-    /// Folder for table, chart and picture.
+    /// Sets the folder for table, chart and image.
     #[arg(long, default_value = "target/tune")]
     pub out: PathBuf,
 }
 
 impl Options {
-    /// Width and height in pixels.
+    /// Returns width and height in pixels.
     pub fn picture_size(&self) -> [u32; 2] {
         let divisor = if self.quick { 2 } else { 1 };
         [self.width / divisor, self.height / divisor]
     }
 
-    /// How much work the truth may be.
+    /// Returns how much work the truth may be.
     pub fn effort(&self) -> Effort {
         Effort {
             picture: self.picture_size(),

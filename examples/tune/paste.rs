@@ -1,9 +1,9 @@
-//! A configuration as the Rust that asks the library for it.
+//! Writes a configuration as the Rust that describes it to the library.
 
 use crate::support::configuration::{Configuration, Method};
 use crate::support::scene::Light;
 
-/// The descriptor of a light's shadows; a textbook's configuration has none.
+/// Returns the descriptor of a light's shadows; a configuration of the tutorial's method has none.
 pub fn descriptor(configuration: &Configuration, light: &Light) -> String {
     let Method::Library { filter, .. } = configuration.method else {
         return String::new();

@@ -1,4 +1,4 @@
-//! A file's triangles, one of its lights and one of its cameras, as a scene to measure on.
+//! Turns a file's triangles, one of its lights and one of its cameras into a scene to measure.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use crate::support::mesh::Mesh;
 use crate::support::scene::{Light, Scene};
 use crate::support::scenes;
 
-/// The scene that the options name.
+/// Returns the scene that the options name.
 pub fn scene(options: &Options) -> Result<Scene, String> {
     let mut scene = match &options.file {
         Some(path) => from_file(path, options)?,
@@ -72,7 +72,7 @@ fn from_file(path: &Path, options: &Options) -> Result<Scene, String> {
     })
 }
 
-/// Every instance with its transform multiplied out, so that rays and device meet the same corners to the bit.
+/// Returns every instance with its transform multiplied out, so that rays and device meet the same corners to the bit.
 fn baked(file: &FileScene) -> Vec<Mesh> {
     let bake = |instance: &crate::scene::Instance| {
         let mesh = &file.meshes[instance.mesh];
@@ -89,7 +89,7 @@ fn baked(file: &FileScene) -> Vec<Mesh> {
     file.instances.iter().map(bake).collect()
 }
 
-/// The light without extent. One without a range reaches all corners.
+/// Converts the light without its extent. One without a range reaches all corners.
 fn convert(light: &FileLight, origin: DVec3, farthest: f32) -> Result<Light, String> {
     let range = light.range.min(1.01 * farthest);
     let position_world = origin + light.position_render.as_dvec3();

@@ -1,4 +1,4 @@
-//! All configurations: a table of those that matter, all of them as CSV, a chart, and a picture.
+//! Shows all configurations: a table of those that matter, all of them as CSV, a chart, and an image.
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -27,7 +27,7 @@ pub fn print_pixels(subject: &Subject<'_>, [width, height]: [u32; 2]) {
     }
 }
 
-/// Samples with their names.
+/// Holds samples with their names.
 pub struct Table<'a> {
     rows: Vec<Row<'a>>,
     choice: &'a Choice<'a>,
@@ -58,7 +58,7 @@ impl<'a> Table<'a> {
         Self { rows, choice }
     }
 
-    /// Prints the front, the textbook, and what is compared with them, cheapest first.
+    /// Prints the front, the tutorial's method, and what is compared with them, cheapest first.
     pub fn print(&self) {
         println!(
             "\n  {:40} {:>6} {:>7} {:>7} {:>7} {:>6} {:>6} {:>6}",
@@ -105,7 +105,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Writes table, chart and picture into a folder that exists.
+    /// Writes table, chart and image into a folder that exists.
     pub fn write(
         &self,
         folder: &Path,
@@ -188,7 +188,7 @@ const WORDS: Words<'_> = Words {
     error: "root of mean squared error of the visibility",
 };
 
-/// "tent 3x3 sharp 3, 2048, 2 cascades".
+/// Returns a name such as "tent 3x3 sharp 3, 2048, 2 cascades".
 fn name(configuration: &Configuration, light: &Light) -> String {
     let family = configuration.family();
     let map_size = configuration.map_size_for(light);

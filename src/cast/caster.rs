@@ -55,11 +55,11 @@ impl Revision {
 /// takes part in.
 pub trait ShadowCaster {
     /// Returns the bounds, in render space and world units, of everything that [`ShadowCaster::draw`] may draw,
-    /// displacement included. The bounds are used to fit the maps and to cull. They must be finite or empty: a
-    /// caster with other bounds is left out of the frame, and
-    /// [`ShadowFrame::broken_bounds`](crate::ShadowFrame::broken_bounds) names it. Empty bounds cast nothing. Bounds that
-    /// are too small lose the shadow of the geometry outside them at times; bounds that are too large cost resolution
-    /// and draws.
+    /// displacement included. The bounds are used to fit the maps and to cull. They must be finite or empty: a caster
+    /// with other bounds is left out of the frame, and
+    /// [`ShadowFrame::broken_bounds`](crate::ShadowFrame::broken_bounds) names it. Empty bounds cast nothing. Bounds
+    /// that are too small lose the shadow of the geometry outside them at times; bounds that are too large cost
+    /// resolution and draws.
     fn bounds(&self) -> Aabb;
 
     /// Returns the pipeline that defines how the caster's vertices are laid out and shaded. It is a handle that is made
@@ -96,9 +96,9 @@ pub trait ShadowCaster {
         true
     }
 
-    /// Returns what is known of the surface within the bounds. The default, [`CasterShape::Any`], is always correct. For
-    /// a ground or a wall that is a convex solid, saying so keeps the map from covering all of it
-    /// ([`CasterShape`] states the symptom of a wrong value).
+    /// Returns what is known of the surface within the bounds. The default, [`CasterShape::Any`], is always correct.
+    /// With [`CasterShape::Convex`] or [`CasterShape::Cuboid`] for a ground or a wall that is one, the map need not
+    /// cover all of it ([`CasterShape`] states the symptom of a wrong value).
     fn shape(&self) -> CasterShape {
         CasterShape::Any
     }

@@ -13,14 +13,14 @@ pub(crate) struct CasterFacts {
     pub keeps_pass_state: bool,
 }
 
-/// Names bounds of a frame that are not finite, or not numbers. What they bound is left out: it neither casts nor
-/// receives, and everything else keeps its shadows.
+/// Names bounds of a frame that have a NaN or an infinite corner and are not empty. The object that they bound is left
+/// out of the frame: it neither casts nor receives, and all other objects keep their shadows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct BrokenBounds {
     /// Is the path of the list: `ShadowFrameDescriptor::casters` or `ShadowFrameDescriptor::receivers`.
     pub field: &'static str,
-    /// Is the position in the list.
+    /// Is the index in the list.
     pub index: usize,
     /// Is the value that was given.
     pub bounds: Aabb,
@@ -85,8 +85,8 @@ pub(crate) struct CasterAnswers {
 }
 
 impl CasterAnswers {
-    /// Queries all casters, and calls `receives` with index and bounds of those that receive. `field` is the path of the
-    /// list in the caller's frame. Bounds that are not finite are added to `broken`.
+    /// Calls the methods of all casters, and `receives` with the index and bounds of those that receive. `field` is the
+    /// path of the list in the caller's frame. Bounds that are neither finite nor empty are added to `broken`.
     pub fn ask<'a>(
         &'a mut self,
         field: &'static str,

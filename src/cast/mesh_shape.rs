@@ -10,19 +10,19 @@ use crate::fit::CasterShape;
 /// vertex. Finer meshes count as [`CasterShape::Any`].
 const MAX_TRIANGLES: usize = 4096;
 
-/// Is the share of the mesh's extent by which a vertex may be off a plane that it counts as lying on: sines and
-/// rotations in f32 are this far off.
+/// Is the distance from a plane, as a fraction of the mesh's extent, within which a vertex counts as lying on the
+/// plane: sines and rotations in f32 have errors of this size.
 const TOLERANCE: f64 = 1.0 / (1 << 20) as f64;
 
 /// Returns what [`ShadowCaster::shape`](crate::ShadowCaster::shape) of a triangle list should return in the space of
 /// its `positions`; [`CasterShape::transformed`] takes the result to render space. Every three `indices` are a
 /// triangle, and an incomplete last one is ignored.
 ///
-/// The shape is [`CasterShape::Convex`] for a mesh that lies in a plane, holes included, and for a closed solid
-/// ([`is_closed_solid`]) in front of none of whose faces a vertex lies. It is [`CasterShape::Cuboid`] for such a solid
-/// whose volume is that of its bounds. For all else, meshes of more than 4096 triangles and indices without a position
-/// included, it is [`CasterShape::Any`], which is always correct. The function compares each triangle with every
-/// vertex: call it once, at load time.
+/// The shape is [`CasterShape::Convex`] for a mesh that lies in a plane, even with holes, and for a closed solid
+/// ([`is_closed_solid`]) that has no vertex in front of any of its faces. It is [`CasterShape::Cuboid`] for such a
+/// solid if its volume is that of its bounds. It is [`CasterShape::Any`], which is always correct, for all other
+/// meshes, for those of more than 4096 triangles, and for indices without a position. The function compares each
+/// triangle with every vertex: call it once, at load time.
 pub fn caster_shape(positions: &[Vec3], indices: &[u32]) -> CasterShape {
     let has_positions = indices
         .iter()
@@ -65,8 +65,8 @@ pub fn caster_shape(positions: &[Vec3], indices: &[u32]) -> CasterShape {
     }
     let center = bounds.min.as_dvec3();
     let volume = faces().map(|[a, b, c]| (a - center).dot((b - center).cross(c - center)) / 6.0);
-    // A convex solid whose volume falls short of the box by less than this leaves no corner of it free by more than
-    // the cube root of six times as much.
+    // Where the volume of a convex solid is smaller than that of its box by less than this, the solid is no farther
+    // from any corner of the box than the cube root of six times as much.
     if volume.sum::<f64>() >= size.element_product() * (1.0 - 3.0 * TOLERANCE) {
         CasterShape::Cuboid
     } else {
@@ -104,7 +104,7 @@ mod tests {
         );
     }
 
-    /// Checks that a dented slab, an open one, two slabs in one mesh and one that is inside out promise nothing.
+    /// Checks that a dented slab, an open one, two slabs in one mesh and one with reversed faces have the shape `Any`.
     #[test]
     fn what_can_shadow_itself_promises_nothing() {
         let slab = corners();

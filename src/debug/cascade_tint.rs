@@ -1,4 +1,4 @@
-//! The engine's picture, tinted by the view that serves each pixel.
+//! Tints the engine's image by the view that covers each pixel.
 
 use bytemuck::{Pod, Zeroable};
 use glam::Mat4;
@@ -8,7 +8,7 @@ use crate::gpu::{capture_device_errors, filled_buffer, fullscreen_pipeline};
 use crate::receive::{SampledMaps, ShadowViewUniform};
 use crate::shader;
 
-/// Mirror of `ShadowTint` in `wgsl/pass/cascade_tint.wgsl`.
+/// Mirrors `ShadowTint` in `wgsl/pass/cascade_tint.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 struct TintUniform {
@@ -16,7 +16,7 @@ struct TintUniform {
     count: [u32; 4],
 }
 
-/// The pipeline that multiplies a picture by its tint.
+/// Holds the pipeline that multiplies an image by its tint.
 #[derive(Debug)]
 pub(crate) struct CascadeTint {
     pipeline: wgpu::RenderPipeline,
@@ -25,10 +25,10 @@ pub(crate) struct CascadeTint {
 }
 
 impl CascadeTint {
-    /// Most views of one light that a tint tells apart.
+    /// Is the largest number of views of one light that a tint distinguishes.
     pub const VIEWS: usize = 8;
 
-    /// For targets of `format`. Device errors are for the caller's scope.
+    /// Creates the pipeline for targets of `format`. The caller captures the errors of the device.
     pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
         let layout = create_layout(device);
         Self {
@@ -41,7 +41,7 @@ impl CascadeTint {
         }
     }
 
-    /// Records the draw; on a refusal nothing is recorded.
+    /// Records the draw. If it returns an error, nothing has been recorded.
     pub fn draw(
         &self,
         device: &wgpu::Device,

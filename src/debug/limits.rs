@@ -1,10 +1,10 @@
-//! What the pictures of a debug view need of a device's limits.
+//! Checks that a device's limits suffice for a debug view.
 
 use crate::error::DebugViewError;
 use crate::gpu::Need;
 use crate::receive::view_uniform_bytes;
 
-/// Can `device` make a debug view that binds `views` views and draws to `format`?
+/// Accepts devices whose limits suffice for a debug view that binds `views` views and draws to `format`.
 pub(crate) fn check_debug_view(
     device: &wgpu::Device,
     format: wgpu::TextureFormat,
@@ -12,7 +12,7 @@ pub(crate) fn check_debug_view(
 ) -> Result<(), DebugViewError> {
     let limits = device.limits();
     let bytes = view_uniform_bytes(views);
-    // Two uniform buffers, a texture and a sampler.
+    // A debug view binds two uniform buffers, a texture and a sampler.
     let needs = [
         Need::new(
             "max_uniform_buffer_binding_size",

@@ -1,9 +1,10 @@
-//! A room beside the stairs: pictures for people, of what the maps of a light hold and of which view serves a pixel.
+//! Draws images for debugging: the contents of a light's maps, and which view covers each pixel. No light depends on
+//! this module.
 //!
 //! ```text
 //! view.rs         DebugView: layers and unfolded cubes as grey levels
-//! cascade_tint.rs the engine's image tinted by the view that serves each pixel
-//! limits.rs       what they need of a device's limits
+//! cascade_tint.rs the engine's image, tinted by the view that covers each pixel
+//! limits.rs       what a debug view needs of a device's limits
 //! ```
 
 mod cascade_tint;

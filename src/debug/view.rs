@@ -1,4 +1,4 @@
-//! `DebugView`: a depth map as a picture for people.
+//! Defines `DebugView`, which draws depth maps as images.
 
 use bytemuck::{Pod, Zeroable};
 use glam::Mat4;
@@ -11,31 +11,31 @@ use crate::gpu::{capture_device_errors, filled_buffer, fullscreen_pipeline};
 use crate::receive::{Selection, ShadowMaps, ShadowViewUniform};
 use crate::shader;
 
-/// Mirror of `ShadowDebugView` in `wgsl/pass/debug_view.wgsl`.
+/// Mirrors `ShadowDebugView` in `wgsl/pass/debug_view.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 struct DebugUniform {
     local: [u32; 4],
 }
 
-/// Views that a picture may need: the faces of a cube.
+/// Is the largest number of views that an image shows: the faces of a cube.
 const FACES: u32 = 6;
 
-/// What of a light to draw.
+/// Selects what a [`DebugView`] draws of a light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum DebugImage {
-    /// One layer of the map, as it lies in the texture.
+    /// Draws the layer of this number, as it is stored in the texture.
     Layer(u32),
-    /// The six faces of a point light as an unfolded cross, four cells wide and three high: -x, -z, +x, +z in the middle row,
-    /// +y above and -y below -z.
+    /// Draws the six faces of a point light as an unfolded cross that is four cells wide and three high: -x, -z, +x and
+    /// +z in the middle row, +y above -z, and -y below it. The cells outside the cross are mid-grey.
     Cross,
-    /// The same of one light of a pool, by the index of its slot.
+    /// Draws the same cross of one light of a pool, which is given by the index of its slot.
     PoolCross(u32),
 }
 
-/// Draws depth maps as grey levels: black at the light, white at the far plane or the end of the light's reach and where nothing
-/// casts. Depths of local lights are shown as linear distance.
+/// Draws depth maps as grey levels: black at the light, white at the far plane or at the end of the light's reach, and
+/// white where nothing casts. Depths of local lights are shown as linear distance.
 #[derive(Debug)]
 pub struct DebugView {
     device: wgpu::Device,
@@ -44,16 +44,18 @@ pub struct DebugView {
     cross: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
     sampler: wgpu::Sampler,
-    /// None for a format that cannot be blended.
+    /// Is `None` for a format that cannot be blended.
     tint: Option<CascadeTint>,
 }
 
 impl DebugView {
-    /// For passes with one colour target of `format`, no depth attachment and one sample.
+    /// Creates a debug view for render passes with one colour target of `format`, no depth attachment and one sample
+    /// per pixel.
     ///
     /// # Errors
-    /// [`DebugViewError::Format`] for a format that floats cannot be drawn to, [`DebugViewError::OverDeviceLimit`] for a device
-    /// that was created with too low limits, [`DebugViewError::Device`] for one that is lost or out of memory.
+    /// Returns [`DebugViewError::Format`] for a format to which a shader cannot write floats,
+    /// [`DebugViewError::OverDeviceLimit`] for a device whose limits do not suffice, and [`DebugViewError::Device`] for
+    /// a device that is lost or out of memory.
     pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Result<Self, DebugViewError> {
         let floats = matches!(
             format.sample_type(None, Some(device.features())),
@@ -102,27 +104,27 @@ impl DebugView {
         capture_device_errors(device, create).map_err(not_made("the pipelines of a debug view"))
     }
 
-    /// Draws `picture` of `maps` over the whole viewport of `pass`, which the engine may set to a corner of its window. Sets
-    /// pipeline and bind group 0.
+    /// Draws `image` of `maps` over the whole viewport of `pass`; the engine may set the viewport to a part of its
+    /// target. Changes the pipeline and bind group 0 of the pass.
     ///
     /// # Errors
-    /// [`DebugViewError`] for a layer that the map does not have, a cross of a light without a cube, or a device that is lost,
-    /// out of memory, or not the light's own; nothing is drawn then.
+    /// Returns [`DebugViewError`] for a layer that the map does not have, for a cross of a light without a cube, for
+    /// maps of another device, and for a device that is lost or out of memory. Nothing is drawn then.
     pub fn draw(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         maps: &ShadowMaps,
-        picture: DebugImage,
+        image: DebugImage,
     ) -> Result<(), DebugViewError> {
         self.check_device(maps)?;
         let sampled = maps.sampled();
         let layers = sampled.view_count;
-        let (pipeline, first_layer) = match picture {
+        let (pipeline, first_layer) = match image {
             DebugImage::Layer(layer) => (&self.layer, layer),
             DebugImage::Cross => (&self.cross, 0),
             DebugImage::PoolCross(index) => (&self.cross, index.saturating_mul(FACES)),
         };
-        let is_cross = !matches!(picture, DebugImage::Layer(_));
+        let is_cross = !matches!(image, DebugImage::Layer(_));
         if is_cross && sampled.selection != Selection::CubeFace {
             return Err(DebugViewError::NotACube { layers });
         }
@@ -150,17 +152,23 @@ impl DebugView {
         Ok(())
     }
 
-    /// Multiplies the picture in `pass` by a colour for the view of `maps` that serves each pixel: red, green, blue, yellow,
-    /// cyan, magenta, orange, violet for the first eight layers, grey where none does. `depth` is a single-sampled depth
-    /// texture of the picture, of the viewport's shape, and `render_from_clip` the inverse of its camera's matrix; depths of 0
-    /// and 1 count as sky. The faces of a point light overlap by a filter's reach, and there the first is shown. Sets pipeline
-    /// and bind group 0.
+    /// Multiplies the image in the target of `pass` by a colour for the view of `maps` that covers each pixel: red,
+    /// green, blue, yellow, cyan, magenta, orange and violet for the first eight layers, and grey where none of them
+    /// does.
     ///
-    /// Where an engine can change its shader instead, `shadow_view_NAME(position)` says the same.
+    /// `depth` is a view of the image's single-sampled depth texture, which is stretched over the viewport.
+    /// `render_from_clip` transforms the camera's clip space to render space: it is the inverse of `clip_from_view *
+    /// view_from_render`. Pixels with a depth of 0 or 1 count as sky and are not tinted. The faces of a point light
+    /// overlap by a filter's reach, and the first of them is shown there. Changes the pipeline and bind group 0 of the
+    /// pass.
+    ///
+    /// An engine that can change its shader may call `shadow_view_NAME(position)` instead, which returns the layer that
+    /// a lookup at the position uses.
     ///
     /// # Errors
-    /// [`DebugViewError::Format`] where the target cannot be blended; [`DebugViewError::Device`] for a device that is lost,
-    /// out of memory, or not the light's own, or a `depth` that it cannot sample. Nothing is drawn then.
+    /// Returns [`DebugViewError::Format`] if the target cannot be blended, [`DebugViewError::OtherDevice`] for maps of
+    /// another device, and [`DebugViewError::Device`] for a device that is lost or out of memory and for a `depth` that
+    /// cannot be sampled. Nothing is drawn then.
     pub fn draw_cascades(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
@@ -216,6 +224,7 @@ impl DebugView {
     }
 }
 
+/// Returns a conversion of a device's refusal to make `object` to the error of a debug view.
 fn not_made(object: &'static str) -> impl Fn(DeviceRefusal) -> DebugViewError {
     move |refusal| DebugViewError::Device(DeviceError { object, refusal })
 }

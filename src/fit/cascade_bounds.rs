@@ -10,27 +10,29 @@ use crate::fit::spacing::Spacing;
 use crate::fit::stability::Stability;
 use crate::fit::visible::{self, Seen};
 
-/// Is the largest distance in texels from the highest receiver to the near plane for the sake of casters whose bounds
-/// reach from there to below all receivers. So one object with bounds of a million kilometres does not take the depth's
-/// precision from all others: depths are f32, and their rounding comes to three texels at this range. It is 84 km for
-/// texels of one centimetre; of such casters, what is nearer to the light casts nothing.
+/// Is the largest distance in texels, from the highest receiver, to which casters whose bounds reach from there to
+/// below all receivers move the near plane. The limit prevents one object with bounds of a million kilometres from
+/// taking the precision of the depths from all others: depths are f32, and their rounding comes to three texels at this
+/// range. The distance is 84 km for texels of one centimetre. The parts of such casters that are nearer to the light
+/// cast nothing.
 const MAX_TEXELS_TO_NEAR: f64 = (1 << 23) as f64;
 
-/// Is the largest share of a map's side that the height of a part above its receivers must reach to make the map cover
-/// the part: coarse maps show shadows that are smaller than the gap that the bias admits.
+/// Limits, as a fraction of a map's side, the height above its receivers that a part needs for the map to cover it. In
+/// coarse maps, shadows are visible that are smaller than the gap that the bias admits.
 const MAX_GAP_SHARE: f64 = 1.0 / 64.0;
 
 /// Holds the casters of a frame, as the fit of a cascade needs them.
 pub(crate) struct CascadeCasters<'a> {
     /// Has one entry per caster.
     pub whole: &'a [CasterBounds],
-    /// Holds the parts of casters that count with parts only, the highest first.
+    /// Holds the parts of divided casters, the highest first. Only these parts of a divided caster count.
     pub parts: &'a [CasterPart],
 }
 
-/// Returns the light-space bounds for receivers in `required`: seen from the light, what both receivers and casters
-/// cover. A caster counts as reaching the receivers where rounding makes that doubtful. Returns `None` where no caster
-/// reaches them. `seen` holds what cameras see, and the depths along the view between which the cascade lies.
+/// Returns the light-space bounds for receivers in `required`: the area, seen from the light, that both receivers and
+/// casters cover. Where rounding makes it doubtful whether a caster reaches the receivers, it counts as reaching them.
+/// Returns `None` where no caster does. `seen` holds what cameras see, and the depths along the view between which the
+/// cascade lies.
 pub(crate) fn fit_bounds(
     input: &FitInput<'_>,
     limits: &FitLimits,
@@ -58,7 +60,7 @@ pub(crate) fn fit_bounds(
             .min(shadows.max)
             .max(covered.min)
             .with_z(required.max.z);
-        // Of a ground that reaches to the horizon, only what the map holds counts for its depths.
+        // Only the part of a wide ground that the map covers counts for its depths.
         if let Some((farthest, nearest)) = depths_over(input, seen, &covered.grown(spacing.error()))
         {
             covered.min.z = farthest.max(required.min.z);
@@ -100,7 +102,7 @@ pub(crate) fn fit_bounds(
         depth: depth(covered.max.z).depth,
     };
     // Only the part of a caster inside the extruded map rectangle counts for the near plane: the far end of a wide
-    // ground does not. The quantized light-space bounds are larger than was requested, so this also takes in casters
+    // ground does not. The quantized light-space bounds are larger than was requested, so this also includes casters
     // that touch only their border.
     let mut over_rect = HalfSpaces::default();
     push_extruded_rect(
@@ -141,9 +143,9 @@ pub(crate) fn fit_bounds(
 
 /// Returns the light-space box of all that can shadow receivers in `required`, or `None` where nothing can.
 ///
-/// A part that rises above its receivers by less than the gap that the bias may leave anyway shadows nothing that could
-/// be seen; so a carpet on a ground does not make the map cover it. `gap_share` is that gap as a share of the side of
-/// what the map covers.
+/// A part that rises above its receivers by less than the gap that the bias may leave has no visible shadow, so the map
+/// does not cover a ground for the sake of a carpet on it. `gap_share` is that gap as a fraction of the side of what
+/// the map covers.
 fn shadow_box(
     casters: &CascadeCasters<'_>,
     required: &LightBox,

@@ -1,8 +1,8 @@
 //! Finds the parts of large casters behind which visible receivers lie.
 //!
-//! The bounds of a ground reach to the horizon, but what it can shadow may be a foot that is sunk into it. So a caster
-//! that is large beside the others counts with those parts only: for each receiver, the intersection of the caster's
-//! bounds with the receiver's bounds extruded toward the light.
+//! The bounds of a ground may reach to the horizon, while all that it can shadow is a foot that is sunk into it. Of a
+//! caster that is much larger than the others, therefore only those parts count: for each receiver, the intersection of
+//! the caster's bounds with the receiver's bounds extruded toward the light.
 
 use glam::DVec3;
 
@@ -19,7 +19,7 @@ const MAX_DIVIDED: usize = 16;
 /// Is the largest number of pairs of a divided caster and a receiver in a frame.
 const MAX_PAIRS: usize = 1 << 16;
 
-/// Is the side that makes a caster large, as a share of the side of what all casters cover together.
+/// Is the least side of a large caster, as a fraction of the side of what all casters cover together.
 const LARGE_SHARE: f64 = 0.25;
 
 /// Is the union of the parts of one caster that rise about equally high above what they shadow.
@@ -46,7 +46,7 @@ pub(crate) struct Casters<'a> {
 #[derive(Clone, Copy, Debug)]
 struct Large {
     caster: u32,
-    /// Is the wider side, seen from the light, of what it covers of the visible receivers.
+    /// Is the wider side, seen from the light, of the area of visible receivers that it covers.
     side: f64,
     light: LightBox,
 }
@@ -94,8 +94,8 @@ impl PartScratch {
         }
         let limit = limit.min(self.large.len());
         self.large[..limit].sort_unstable_by(larger_first);
-        // From the largest on, a caster is divided where it is large beside what the parts of those before it and all
-        // those after it cover.
+        // Starting from the largest, each caster is divided if it is large in relation to the area that the parts of
+        // the casters before it and the whole casters after it cover.
         let mut rest = vec![LightBox::EMPTY; limit + 1];
         for large in &self.large[limit..] {
             rest[limit].union(&large.light);
@@ -105,9 +105,8 @@ impl PartScratch {
             rest[index].union(&self.large[index].light);
         }
         let mut parts_box = LightBox::EMPTY;
-        for index in 0..limit {
-            let large = self.large[index];
-            let mut all = rest[index];
+        for (large, remaining) in self.large.iter().zip(&rest[..limit]) {
+            let mut all = *remaining;
             all.union(&parts_box);
             if large.side < LARGE_SHARE * all.widest_side() {
                 break;
@@ -192,7 +191,7 @@ struct Pair {
 }
 
 /// Returns the part of `caster` that is met by the rays toward the light from a box of receivers, or `None` where none
-/// is met. A ray must travel some way: a surface does not shadow points in itself.
+/// is met. A ray must have some length, because a surface does not shadow points in itself.
 ///
 /// A point of the box at `r` meets the caster at `r + s l` for some `s` from `near` to `far`, whose limits follow from
 /// the intervals of both boxes on each axis.
@@ -280,7 +279,7 @@ mod tests {
         Aabb::new(Vec3::new(-0.2, low, -0.2), Vec3::new(0.2, 0.8, 0.2))
     }
 
-    /// Checks that of a flat ground of any size only the part counts that is above a sunk foot.
+    /// Checks that only the part of a flat ground that is above a sunk foot counts, whatever the ground's size.
     #[test]
     fn a_flat_ground_counts_where_a_foot_is_below_it() {
         for half in [5.0_f32, 500.0, 5000.0] {
@@ -312,8 +311,8 @@ mod tests {
         }
     }
 
-    /// Checks that a carpet two millimetres above a thick ground is that high above its upper side, if the ground is a
-    /// cuboid, and otherwise as high as above its lower side.
+    /// Checks that the height of a carpet two millimetres above a thick ground is measured from the ground's upper side
+    /// if the ground is a cuboid, and otherwise from its lower side.
     #[test]
     fn a_carpet_is_as_high_as_it_lies_above_a_cuboid() {
         let carpet = Aabb::new(Vec3::new(-4.0, 0.002, -4.0), Vec3::new(4.0, 0.002, 4.0));

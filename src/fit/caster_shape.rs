@@ -4,16 +4,17 @@ use glam::Mat4;
 
 /// States what is known of a caster's surface beyond its bounds.
 ///
-/// A light's map covers whatever can hold a visible shadow. Bounds alone do not tell whether an object can shadow
-/// itself: a hilly terrain does, a flat slab of the same bounds does not. Of an object that is known not to, only the
-/// part counts that can shadow *other* objects, and a ground slab of any size then costs no texels. A shape that
-/// promises too much loses the shadows that the object casts on itself outside the part of the map that others need.
+/// A light's map covers every surface on which a shadow may be visible. Bounds alone do not tell whether an object can
+/// shadow itself: a hilly terrain does, and a flat slab of the same bounds does not. If an object is known not to
+/// shadow itself, the map covers only the part of it that can shadow *other* objects, so a ground slab of any size
+/// costs no texels. A shape that promises too much loses shadows that the object casts on itself, outside the part of
+/// the map that other objects need.
 ///
 /// [`caster_shape`](crate::caster::caster_shape) finds the shape of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum CasterShape {
-    /// Makes no promise: any surface within the bounds. Always correct.
+    /// Makes no promise: the bounds may contain any surface. This is always correct.
     #[default]
     Any,
     /// Promises a convex solid or a part of a plane: no point of its surface that faces the light is shadowed by
@@ -21,7 +22,7 @@ pub enum CasterShape {
     /// their visibility.)
     Convex,
     /// Promises a convex solid that fills its bounds: a cuboid whose sides are parallel to the axes of render space.
-    /// Shadows can then be seen on the sides of the bounds alone.
+    /// Shadows on it are then visible only on the sides of the bounds.
     Cuboid,
 }
 

@@ -152,7 +152,7 @@ impl DirectionalFit {
     }
 }
 
-/// Fills `lists` with what counts of the receivers, and returns the bounds of it all.
+/// Fills `lists` with the parts of the receivers that count, and returns the bounds of all of them.
 fn find_visible(input: &FitInput<'_>, lists: &mut SeenLists) -> SeenBounds {
     match &input.region {
         Region::Bounds(bounds) => SeenBounds::of_boxes([bounds]),
@@ -164,7 +164,7 @@ fn find_visible(input: &FitInput<'_>, lists: &mut SeenLists) -> SeenBounds {
     }
 }
 
-/// Replaces casters that are large beside all others by the parts of them that count. In a given box everything
+/// Replaces casters that are much larger than all others by the parts of them that count. In a given box everything
 /// receives, so that all of a caster counts.
 fn divide_casters(input: &FitInput<'_>, visible: &SeenBounds, scratch: &mut FitScratch) {
     if matches!(input.region, Region::Bounds(_)) {

@@ -21,8 +21,8 @@ pub(crate) fn checked_spacing(
 ) -> Result<Spacing, ShadowError> {
     let spacing = Spacing::around(input.origin, required);
     let extent = || match slice {
-        // This is the extent of the slice, not of what is seen: that may be a corner of an object, which needs no finer
-        // texels than the rest of the image.
+        // This is the extent of the slice and not of what is seen. That may be a corner of an object, which needs no
+        // finer texels than the rest of the image.
         Some(slice) if limits.stability == Stability::TightFit => {
             let (depth_near, depth_far) = slice.between;
             let sphere = slice.camera.slice_sphere(depth_near, depth_far);
@@ -70,7 +70,7 @@ pub(crate) fn camera_slice<'a>(
     };
     let end = |index| limits.split.depth(index, limits.cascades, near, far);
     let between = (end(cascade), end(cascade + 1));
-    // An explicit end before all that is seen leaves its cascade empty.
+    // A cascade whose explicit end lies before everything that is seen is empty.
     let is_empty = between.0 == between.1 && near < far;
     (!is_empty).then_some(Slice {
         camera,

@@ -3,7 +3,7 @@
 use crate::ShadowError;
 use crate::check::in_range;
 
-/// The largest number of cascades that one light may have.
+/// Is the largest number of cascades that one light may have.
 pub(crate) const MAX_CASCADES: usize = 8;
 
 /// Selects how the covered depth is divided among the cascades of a directional light.
@@ -11,9 +11,9 @@ pub(crate) const MAX_CASCADES: usize = 8;
 ///
 /// Depths are along the camera's view, in world units. They run from the nearest visible receiver (not the camera's
 /// near plane) to the farthest one or the camera's distance limit; under
-/// [`Stability::BoundingSphere`](crate::Stability::BoundingSphere) they run from the camera's near plane to its far plane or
-/// distance limit. A cascade that is too long for its map shows coarse texels at its near end. Numbers out of range
-/// make [`DirectionalShadow::new`](crate::DirectionalShadow::new) return [`ShadowError::OutOfRange`].
+/// [`Stability::BoundingSphere`](crate::Stability::BoundingSphere) they run from the camera's near plane to its far
+/// plane or distance limit. A cascade that is too long for its map shows coarse texels at its near end. Numbers out of
+/// range make [`DirectionalShadow::new`](crate::DirectionalShadow::new) return [`ShadowError::OutOfRange`].
 ///
 /// Sources: Engel 2006 (*Cascaded Shadow Maps*), Zhang et al. 2006 (*Parallel-Split Shadow Maps*, GPU Gems 3 ch. 10).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,12 +40,12 @@ pub enum CascadeSplit<'a> {
     },
 }
 
-/// The same with its numbers checked, and its own.
+/// Holds a [`CascadeSplit`] whose numbers are checked, with a copy of them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum SplitRule {
-    /// A share of the way from uniform to logarithmic.
+    /// Divides at the fraction `lambda` of the way from uniform to logarithmic.
     Practical { lambda: f64 },
-    /// The ends of all cascades but the last.
+    /// Divides at the ends of all cascades but the last.
     Explicit { ends: [f64; MAX_CASCADES - 1] },
 }
 
@@ -65,7 +65,7 @@ impl CascadeSplit<'_> {
                 let growing = ends.is_sorted_by(|before, after| before < after);
                 in_range(
                     field,
-                    "of finite ends that grow, one fewer than there are cascades",
+                    "a split with finite ends that grow, one fewer than there are cascades",
                     finite && growing && ends.len() + 1 == cascades as usize,
                     format_args!("{ends:?}"),
                 )?;
@@ -78,7 +78,7 @@ impl CascadeSplit<'_> {
         };
         in_range(
             field,
-            "of a lambda in 0..=1",
+            "a split with a lambda in 0..=1",
             (0.0..=1.0).contains(&lambda),
             lambda,
         )?;
@@ -108,7 +108,7 @@ impl SplitRule {
         } else {
             uniform
         };
-        // The ends of the scale are taken as they are, so that no rounding of the other enters.
+        // At both limits of `lambda` one of the depths is returned unchanged, so that the other adds no rounding.
         if lambda == 1.0 {
             logarithmic
         } else if lambda == 0.0 {

@@ -99,7 +99,7 @@ impl SeenBounds {
 pub(crate) struct Receivers<'a> {
     /// Holds the bounds in render space.
     pub bounds: &'a [Aabb],
-    /// Holds, for each of them, the index of the caster whose surface it is, if it is one's.
+    /// Holds, for each of them, the index of the caster whose surface it is, or `None` where it is not a caster's.
     pub casters: &'a [Option<u32>],
 }
 
@@ -213,8 +213,8 @@ pub(crate) fn light_box_between(
     covered
 }
 
-/// Calls `visit` with points whose convex hull is, for each part that the camera at `index` sees between two depths, its
-/// intersection with `over`, the sides of a rectangle across the light.
+/// Calls `visit` with points whose convex hull is, for each part that the camera at `index` sees between two depths,
+/// its intersection with `over`, the sides of a rectangle across the light.
 pub(crate) fn visit_between(
     (index, camera): (usize, &CameraFrustum),
     seen: &[Seen],

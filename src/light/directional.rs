@@ -1,47 +1,56 @@
-//! `DirectionalShadow`: the sun.
+//! Defines `DirectionalShadow`: the shadows of the sun and of other distant lights.
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 use crate::cast::{FrameCasters, ViewDraws};
 use crate::check;
 use crate::fit::{
-    CameraFrustum, DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, MAX_CASCADES,
-    Receivers, Region,
+    DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, MAX_CASCADES, Receivers, Region,
 };
+use crate::light::distance_limit::distance_limit;
+use crate::light::large_triangles::depth_reach;
 use crate::receive::{
-    LayerState, MapsFrame, NO_LIMIT, Sampling, Selection, ShadowMaps, ShadowMapsDescriptor,
-    ShadowReport, check_bias, check_fade, check_planar_filter,
+    LayerState, MapsFrame, Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, ShadowReport,
+    check_bias, check_fade, check_planar_filter,
 };
 use crate::{
-    Aabb, Bias, CascadeSplit, DepthFormat, Filter, ShadowError, ShadowFrame, ShadowView, Stability,
+    Bias, CascadeSplit, DepthFormat, Filter, ShadowError, ShadowFrame, ShadowView, Stability,
 };
 
-/// What a [`DirectionalShadow`] is made of.
+/// Describes what a [`DirectionalShadow`] is made of. [`DirectionalShadow::new`] returns [`ShadowError::OutOfRange`]
+/// for values outside the ranges given here, and [`ShadowError::OverDeviceLimit`] for those beyond the device's limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectionalShadowDescriptor<'a> {
-    /// Label from which all objects derive theirs. Default "directional shadow".
+    /// Is the label from which all wgpu objects of the light derive theirs; "directional shadow" if `None`, the
+    /// default.
     pub label: wgpu::Label<'a>,
-    /// Texels per side of each cascade's map, 1 up to the device's `max_texture_dimension_2d`. Default 2048. Cost and memory
-    /// grow with its square, the blur and misplacement of an edge shrink with it.
+    /// Is the number of texels per side of each cascade's map: from 1 to the device's `max_texture_dimension_2d`. The
+    /// default is 2048. Cost and memory grow with its square; the blur and the displacement of an edge shrink in
+    /// proportion to it.
     pub map_size: u32,
-    /// Cascades, 1..=8, and no more than the device's `max_texture_array_layers`. Default 1, which suits a scene as deep as it is wide; a view to the horizon wants 3 or 4.
+    /// Is the number of cascades: 1..=8, and no more than the device's `max_texture_array_layers`. The default is 1,
+    /// which suits a scene that is as deep as it is wide; a view to the horizon needs 3 or 4. With too few, texels are
+    /// coarse near the camera.
     pub cascades: u32,
-    /// Where one cascade ends and the next begins. Default logarithmic.
+    /// Selects where one cascade ends and the next begins. The default is logarithmic.
     pub split: CascadeSplit<'a>,
-    /// How a map is looked up.
+    /// Selects how a map is sampled. The default is that of [`Filter`]. Filters for point lights only are refused, and
+    /// the light size of [`Filter::Pcss`] and [`Filter::PcssRotated`] is an angular diameter below π.
     pub filter: Filter,
-    /// How receivers are kept from shadowing themselves.
+    /// Selects how receivers are kept from shadowing themselves. The default is [`Bias::Auto`].
     pub bias: Bias,
-    /// Share of a cascade's width, 0..=0.5, over which it gives way to the next toward its border. Default 0: a cascade ends
-    /// where its map ends, and the edges of shadows widen there at once. A tenth hides that; inside it two maps are looked up.
-    /// Too large a share costs lookups and lets the coarser map blur what the finer one holds.
+    /// Is the fraction of a cascade's width, 0..=0.5, over which it blends into the next one toward its border. The
+    /// default is 0: a cascade ends where its map ends, and the edges of shadows become wider there at once. A value of
+    /// 0.1 hides that; two maps are sampled inside the blended border. Too large a value costs lookups and lets the
+    /// coarser map blur what the finer one resolves.
     pub blend: f32,
-    /// Fraction of [`CameraView::max_distance`](crate::CameraView::max_distance), 0..=1, over which shadows fade to light
-    /// before they end there. Default 0: they end at once. Without a distance it has no effect.
+    /// Is the fraction of [`CameraView::max_distance`](crate::CameraView::max_distance), 0..=1, over which shadows fade to
+    /// light before they end there. The default is 0: they end at once. Without a distance it has no effect.
     pub fade: f32,
-    /// What may change the extent of a cascade.
+    /// Selects what may change the extent of a cascade. The default is [`Stability::TightFit`].
     pub stability: Stability,
-    /// How the maps store depths. `Unorm16` halves their memory; casters need pipelines for it
+    /// Selects how the maps store depths. The default is [`DepthFormat::Float32`]. `Unorm16` halves their memory; the
+    /// casters need pipelines for it
     /// ([`CasterPipelineDescriptor::depth_formats`](crate::caster::CasterPipelineDescriptor::depth_formats)).
     pub depth_format: DepthFormat,
 }
@@ -64,8 +73,8 @@ impl Default for DirectionalShadowDescriptor<'_> {
 }
 
 impl DirectionalShadowDescriptor<'_> {
-    /// One gather a lookup and a quarter of the default's texels: the cheapest that keeps edges smooth, with one and a half
-    /// times the default's error.
+    /// Describes the cheapest light whose shadow edges are smooth: one gather per lookup and a quarter of the default's
+    /// texels, with 1.5 times the default's error.
     pub const CHEAP: Self = Self {
         label: None,
         map_size: 1024,
@@ -79,8 +88,9 @@ impl DirectionalShadowDescriptor<'_> {
         depth_format: DepthFormat::Float32,
     };
 
-    /// Nine gathers a lookup and four times the default's texels, for seven tenths of the default's error. Measured, as are the
-    /// default and [`CHEAP`](Self::CHEAP), by `cargo bench --bench speed_vs_error`: none of the three is beaten at its cost.
+    /// Describes a more accurate light: nine gathers per lookup and four times the default's texels, with 0.7 times the
+    /// default's error. `cargo bench --bench speed_vs_error` measures this one, the default and [`CHEAP`](Self::CHEAP);
+    /// no measured configuration of the same cost has a smaller error than any of the three.
     pub const ACCURATE: Self = Self {
         map_size: 4096,
         filter: Filter::Tent5 { sharpness: 4.0 },
@@ -88,18 +98,21 @@ impl DirectionalShadowDescriptor<'_> {
     };
 }
 
-/// A light so far away that its rays are parallel.
+/// Describes a light that is so far away that its rays are parallel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectionalLight {
-    /// Direction in which the light shines (from the sun to the ground), any length but zero; world axes.
+    /// Is the direction in which the light shines (from the sun to the ground), in world axes, finite and of any length
+    /// but zero.
     pub direction: Vec3,
-    /// The world's up axis, any length but zero: the map's x axis is horizontal, so that level ground under a low sun
-    /// fills the map. Default +Y.
+    /// Is the world's up axis, finite and of any length but zero. It orients the map: the map's x axis is horizontal,
+    /// so that level ground under a low sun fills the map. Where the light's direction is within 26° of that axis, the
+    /// map follows the world's other axes instead. [`DirectionalLight::new`] sets +Y. A wrong axis costs resolution
+    /// under a low sun.
     pub up: Vec3,
 }
 
 impl DirectionalLight {
-    /// Light along `direction` in a world whose up axis is +Y.
+    /// Makes a light along `direction` in a world whose up axis is +Y.
     pub const fn new(direction: Vec3) -> Self {
         Self {
             direction,
@@ -107,7 +120,7 @@ impl DirectionalLight {
         }
     }
 
-    /// Returns the light's axes if its vectors have directions.
+    /// Returns the light's axes if its vectors are finite and not zero.
     fn axes(&self) -> Result<LightAxes, ShadowError> {
         let (direction, up) = (self.direction.as_dvec3(), self.up.as_dvec3());
         check::direction("DirectionalLight::direction", direction)?;
@@ -116,7 +129,8 @@ impl DirectionalLight {
     }
 }
 
-/// Shadows of a directional light: a depth texture with one layer per cascade, its uniforms, and what is needed to fill them.
+/// Renders the shadows of a directional light. Owns a depth texture with one layer per cascade, the uniforms of its
+/// views, and the state that decides what each frame must draw.
 #[derive(Debug)]
 pub struct DirectionalShadow {
     maps: ShadowMaps,
@@ -126,10 +140,11 @@ pub struct DirectionalShadow {
 }
 
 impl DirectionalShadow {
-    /// Makes texture and buffers. Until the first [`DirectionalShadow::record`], everything is lit.
+    /// Creates the light's texture and buffers. Until the first [`DirectionalShadow::record`], every surface is lit.
     ///
     /// # Errors
-    /// [`ShadowError`] for a descriptor out of range, or a device that cannot hold it.
+    /// Returns [`ShadowError`] for a descriptor with a value out of range, and for a device whose limits or memory do
+    /// not suffice or that is lost.
     pub fn new(
         device: &wgpu::Device,
         descriptor: &DirectionalShadowDescriptor<'_>,
@@ -153,7 +168,7 @@ impl DirectionalShadow {
         check_planar_filter("DirectionalShadowDescriptor::filter", descriptor.filter)?;
         check::in_range(
             "DirectionalShadowDescriptor::filter",
-            "of an angular diameter below π",
+            "a filter with an angular diameter of the light below π",
             descriptor.filter.light_size() < std::f32::consts::PI,
             descriptor.filter.light_size(),
         )?;
@@ -194,14 +209,17 @@ impl DirectionalShadow {
         })
     }
 
-    /// Fits the cascades to the frame, culls, writes the uniforms and records the depth passes that are needed.
+    /// Fits the cascades to the frame, culls the casters, writes the uniforms, and records the depth passes that are
+    /// needed.
     ///
-    /// The encoder must be submitted before anything that asks for these shadows, and encoders in the order in which they were
-    /// recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)).
+    /// The encoder must be submitted before any work that samples these shadows, and encoders must be submitted in the
+    /// order in which they were recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)).
     ///
     /// # Errors
-    /// [`ShadowError`] for input that is not finite or not a camera, light or box. Nothing is recorded then, and the last good
-    /// maps remain.
+    /// Returns [`ShadowError`] for a light whose vectors are not finite or are zero, for a camera without a finite far
+    /// end under [`Stability::BoundingSphere`], for a view that cannot be represented, for casters whose pipelines do
+    /// not fit the light, and for a device that is lost or out of memory. Nothing is recorded then, and the maps of the
+    /// last successful frame remain.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -230,7 +248,7 @@ impl DirectionalShadow {
         let maps_frame = MapsFrame {
             views,
             layers: &layers[..self.limits.cascades],
-            viewer_render: None,
+            camera_render: None,
             casters: frame.casters,
         };
         let report = self.maps.record(encoder, maps_frame)?;
@@ -238,7 +256,7 @@ impl DirectionalShadow {
         Ok(report)
     }
 
-    /// Checks that the slices of all cameras have an end, where the fit goes by the whole of them.
+    /// Checks that the slices of all cameras end at a finite depth where the fit covers the whole of them.
     fn check_distances(&self, frame: &ShadowFrame<'_>) -> Result<(), ShadowError> {
         let Region::Cameras(cameras) = frame.region else {
             return Ok(());
@@ -256,7 +274,7 @@ impl DirectionalShadow {
         Ok(())
     }
 
-    /// Returns the cascades that something casts into, with the casters of each.
+    /// Returns the views of the cascades into which something casts, with the casters of each.
     fn drawn_views(
         &mut self,
         fit: &DirectionalFit,
@@ -273,7 +291,7 @@ impl DirectionalShadow {
             let view =
                 ShadowView::orthographic(&input.axes, light_bounds, input.origin, cascade as u32);
             let view = view.checked()?;
-            let reach = depth_reach(&view, input, casters, &drawn);
+            let reach = depth_reach(&view, casters, &drawn);
             views.push(ViewDraws::new(view.over_depths_from(reach), drawn));
         }
         Ok(views)
@@ -290,80 +308,9 @@ impl DirectionalShadow {
         self.fit = DirectionalFit::default();
     }
 
-    /// Says that the maps no longer hold what was recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)): the
+    /// Declares the contents of the maps invalid ([what a kept map relies on](crate#what-a-kept-map-relies-on)): the
     /// next frame draws every view.
     pub fn invalidate(&mut self) {
         self.maps.invalidate();
     }
-}
-
-/// Is how many times the rounding of a single coordinate the depths of a large triangle are off: the sum of products
-/// that gives a corner's depth is rounded, and the interpolation between corners once more.
-const LARGE_TRIANGLE_ROUNDING: f64 = 2.0;
-
-/// Returns the largest render coordinate from which depths in the view are computed. Rasterisers interpolate between
-/// the corners of a triangle, and each is rounded where it is: a triangle whose corners are far outside the view brings
-/// their rounding into it. The size of a caster's triangles is taken to be that of as many equal ones that cover its
-/// bounds, or its bounds where their number is not known.
-fn depth_reach(
-    view: &ShadowView,
-    input: &FitInput<'_>,
-    casters: &FrameCasters<'_>,
-    drawn: &[u32],
-) -> f64 {
-    let mut reach = view.render_reach();
-    let center = view.anchor_render().as_dvec3();
-    let radius = reach - center.abs().max_element();
-    for &caster in drawn {
-        let bounds = &input.casters[caster as usize];
-        let corners_away = corners_away(bounds, center, radius);
-        if corners_away <= radius {
-            continue;
-        }
-        let diagonal = (bounds.max.as_dvec3() - bounds.min.as_dvec3()).length();
-        let pairs = f64::from(casters.facts(caster).triangles.max(2)) * 0.5;
-        let away = corners_away.min(diagonal / pairs.sqrt());
-        reach = reach.max(view.render_reach() + LARGE_TRIANGLE_ROUNDING * away);
-    }
-    reach
-}
-
-/// Returns the distance from `center` of the fourth nearest corner of a box, which is that of a whole side: near the
-/// foot of a high tower, depths follow from the corners at its foot. A box on all sides of the view (a sphere of
-/// `radius`) says nothing, and 0 is returned: it is that of a terrain of many triangles, or it is wrong.
-fn corners_away(bounds: &Aabb, center: DVec3, radius: f64) -> f64 {
-    let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
-    if min.cmplt(center - radius).all() && max.cmpgt(center + radius).all() {
-        return 0.0;
-    }
-    let mut distances: [f64; 8] =
-        std::array::from_fn(|corner| bounds.corner(corner).as_dvec3().distance(center));
-    distances.sort_unstable_by(f64::total_cmp);
-    distances[3]
-}
-
-/// Is the least fraction of the distance over which shadows end: less is not told apart from a sharp end.
-const LEAST_FADE: f64 = 1e-4;
-
-/// Is the cosine of the angle between cameras that count as looking the same way, as the eyes of a headset do.
-const SAME_WAY_COSINE: f64 = 0.99;
-
-/// Returns the plane of the uniform at which shadows end: the farthest end of all cameras, if they all have one and look
-/// the same way. Otherwise it is no plane, and shadows end where the maps end.
-fn distance_limit(region: Region<'_>, fade: f32) -> [f32; 4] {
-    let Region::Cameras([first, others @ ..]) = region else {
-        return NO_LIMIT;
-    };
-    let forward = first.forward();
-    let end = |camera: &CameraFrustum| {
-        let same_way = camera.forward().dot(forward) > SAME_WAY_COSINE;
-        let end = -camera.depth(DVec3::ZERO) + camera.max_distance();
-        if same_way { end } else { f64::INFINITY }
-    };
-    let end = others.iter().map(end).fold(end(first), f64::max);
-    if !end.is_finite() {
-        return NO_LIMIT;
-    }
-    let over = first.max_distance() * f64::from(fade).max(LEAST_FADE);
-    (-forward / over).extend(end / over).as_vec4().to_array()
 }

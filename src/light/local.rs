@@ -1,19 +1,21 @@
-//! What spot and point lights share, alone or in a pool: the fit of their perspective views, the choice of which are drawn in
-//! a frame, and the way to the maps.
+//! Records spot and point lights, alone or in a pool: fits their perspective views, selects those that are drawn in a
+//! frame, and passes them to the maps.
 
 use glam::DVec3;
 
 use crate::cast::ViewDraws;
 use crate::fit::{LightAxes, LocalFit, LocalInput, MAX_LOCAL_VIEWS, Reached};
-use crate::receive::{LayerState, MapsFrame, NO_LIMIT, ShadowMaps, ShadowMapsDescriptor};
+use crate::light::distance_limit::range_limit;
+use crate::receive::{LayerState, MapsFrame, ShadowMaps, ShadowMapsDescriptor};
 use crate::{ShadowError, ShadowFrame, ShadowView, report::ShadowReport};
 
-/// Spot or point lights in the slots of one set of maps: a single light has the one slot, a pool has as many as its capacity.
+/// Holds spot or point lights in the slots of one set of maps. A single light has one slot; a pool has as many as its
+/// capacity.
 #[derive(Debug)]
 pub(crate) struct LocalLights {
     maps: ShadowMaps,
     slots: Vec<SlotState>,
-    /// Empty between frames; kept for their memory.
+    /// Is empty between frames; this list and the next are reused for their memory.
     candidates: Vec<Candidate>,
     layers: Vec<LayerState>,
     reached: Reached,
@@ -22,45 +24,47 @@ pub(crate) struct LocalLights {
 #[derive(Clone, Debug, Default)]
 struct SlotState {
     fit: LocalFit,
-    /// Frames for which a needed refresh has been put off.
+    /// Counts the frames for which a needed refresh has been deferred.
     waited: u32,
-    /// Its layers have been drawn, or found to need nothing, since it came.
+    /// States that the slot's layers have been drawn, or were found to need no drawing, since the light was inserted.
     has_map: bool,
-    /// What was put into them then.
+    /// Holds the views that the layers were last refreshed with.
     views: [Option<ShadowView>; MAX_LOCAL_VIEWS],
-    /// Where it stood then.
+    /// Is the position that the light had then.
     position_world: DVec3,
 }
 
-/// A light of a frame.
+/// Describes a light of a frame, in terms that spot and point lights have in common.
 #[derive(Debug)]
 pub(crate) struct LocalPlacement {
     pub slot: u32,
     pub position_world: DVec3,
     pub range: f32,
-    /// Axes of its views; the first `view_count` count.
+    /// Holds the axes of its views; only the first `view_count` are used.
     pub axes: [LightAxes; MAX_LOCAL_VIEWS],
     pub view_count: u32,
-    /// Tangent of half the angle of a view, without border.
+    /// Is the tangent of half the angle of a view, without the border that a filter needs.
     pub tangent: f64,
+    /// Is the cosine of the half-angle of the cone; -2 if there is no cone.
     pub cone_cosine: f64,
-    /// Who is refreshed first.
+    /// Determines which lights are refreshed first under a budget.
     pub importance: f32,
 }
 
-/// A light's new fit and what it would draw.
+/// Holds the new fit of a light and the draws that would refresh it.
 #[derive(Debug)]
 struct Candidate {
     fit: LocalFit,
     draws: [Option<ViewDraws>; MAX_LOCAL_VIEWS],
-    /// The views of `draws`.
+    /// Holds the views of `draws`.
     views: [Option<ShadowView>; MAX_LOCAL_VIEWS],
-    /// Depth passes that its views need.
+    /// Counts the depth passes that its views need.
     needed: u32,
     refreshed: bool,
 }
 
-/// What a light of importance above 0 counts for at least, as a share of the most important one of the frame.
+/// Is the least importance that a light with an importance above 0 counts for, as a fraction of the greatest in the
+/// frame.
 const LEAST_SHARE_OF_IMPORTANCE: f64 = 1.0 / 4096.0;
 
 impl LocalLights {
@@ -83,7 +87,7 @@ impl LocalLights {
         &self.maps
     }
 
-    /// Marks the maps as not holding what was recorded.
+    /// Declares the contents of the maps invalid, so that the next frame draws every view.
     pub fn invalidate(&mut self) {
         self.maps.invalidate();
     }
@@ -95,12 +99,13 @@ impl LocalLights {
             .for_each(|slot| slot.fit.reset_history());
     }
 
-    /// Forgets the light of a slot.
+    /// Resets the state of a slot, whose next light then has no map until it is drawn.
     pub fn reset(&mut self, slot: u32) {
         self.slots[slot as usize] = SlotState::default();
     }
 
-    /// Fits, culls, uploads and records.
+    /// Fits and culls `lights`, uploads their uniforms and records their depth passes. `max_views` is the largest
+    /// number of depth passes to record; `None` sets no limit.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -124,7 +129,7 @@ impl LocalLights {
         for (light, candidate) in lights.iter().zip(&mut candidates) {
             let first_layer = light.slot * light.view_count;
             let state = &self.slots[light.slot as usize];
-            // A light that is put off is asked where it stood when its map was drawn.
+            // The map of a deferred light is sampled from the position that the light had when the map was drawn.
             let (position_world, reach_world) = if candidate.refreshed || !state.has_map {
                 (light.position_world, candidate.fit.reach)
             } else {
@@ -156,7 +161,7 @@ impl LocalLights {
         let maps_frame = MapsFrame {
             layers: &layers,
             views,
-            viewer_render: frame.viewer_render(),
+            camera_render: frame.camera_render(),
             casters: frame.casters,
         };
         let report = maps.record(encoder, maps_frame)?;
@@ -179,7 +184,7 @@ impl LocalLights {
         Ok(report)
     }
 
-    /// Fits and culls one light.
+    /// Fits and culls one light, and returns what would refresh it.
     fn candidate(
         &mut self,
         frame: &ShadowFrame<'_>,
@@ -237,13 +242,16 @@ impl LocalLights {
         })
     }
 
-    /// Spends the budget: lights in need of a refresh by importance times the frames they have waited, so that none starves.
-    /// The first is always refreshed, however small the budget.
+    /// Selects the lights to refresh within a budget of `max_views` depth passes. Lights that need a refresh are taken
+    /// in descending order of urgency, which is the importance times (1 + the number of frames waited), so that
+    /// no light of importance above 0 waits for ever. The first is always refreshed, however small the budget; each
+    /// further one is refreshed if its passes fit into the rest.
     ///
-    /// In f64 no product overflows or vanishes: a finite f32 times 2³² is far below the largest f64. An importance above 0
-    /// counts for no less than a share of the frame's greatest. With `n` lights, the one of weight `w` beside a greatest of `W`
-    /// then waits at most `(n - 1) W / w + n` frames: once its product exceeds `(n - 1) W`, only those go before it that have
-    /// waited for `n - 1` frames, and that is each of the others once.
+    /// The products neither overflow nor underflow in f64: a finite f32 times 2³² is far below the largest f64. An
+    /// importance above 0 counts for no less than [`LEAST_SHARE_OF_IMPORTANCE`] of the frame's greatest. Among `n`
+    /// lights, one of weight `w` beside a greatest weight of `W` then waits at most `(n - 1) W / w + n` frames: once
+    /// its product exceeds `(n - 1) W`, only lights that have waited for at least `n - 1` frames precede it, and each
+    /// of the others can do so only once.
     fn choose(&self, lights: &[LocalPlacement], max_views: u32, candidates: &mut [Candidate]) {
         let importances = lights.iter().map(|light| f64::from(light.importance));
         let least = importances.fold(0.0, f64::max) * LEAST_SHARE_OF_IMPORTANCE;
@@ -271,17 +279,9 @@ impl LocalLights {
     }
 }
 
-/// How much wider than its receivers a view of `map_size` texels is rendered, so that no kernel leaves it: tan(fov/2) grows by
-/// N / (N - 2 border). A map smaller than its borders keeps its middle half.
+/// Returns the factor by which a view of `map_size` texels is rendered wider than its receivers, so that no kernel
+/// leaves the map: tan(fov/2) grows by N / (N - 2 border). At most half of a map becomes border.
 fn border(map_size: u32, border_texels: f64) -> f64 {
     let size = f64::from(map_size);
     size / (size - 2.0 * border_texels.min(size * 0.25))
-}
-
-/// Returns the coefficients of the uniform by which shadows fade toward the end of a light's range.
-fn range_limit(range: f32, fade: f32) -> [f32; 4] {
-    if fade == 0.0 {
-        return NO_LIMIT;
-    }
-    [1.0 / (range * fade), 0.0, 0.0, 1.0 / fade]
 }

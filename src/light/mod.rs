@@ -1,15 +1,20 @@
-//! Top floor: the lights that an engine records, and the scene that they share. They wire the floors below together.
+//! Contains the lights that an engine records and the scene that they share. They connect the fit, the depth passes
+//! and the lookups.
 //!
 //! ```text
-//! scene.rs        ShadowScene and ShadowFrame: what a frame brings for all lights
+//! scene.rs        ShadowScene and ShadowFrame: the input of a frame for all lights
 //! directional.rs  DirectionalShadow: the sun
 //! spot.rs         SpotShadow: a light that shines into a cone
 //! omni.rs         OmniShadow: a light that shines in every direction
 //! pool.rs         pools of spot and point lights
-//! local.rs        what spot and point lights share
+//! distance_limit.rs   where shadows end
+//! large_triangles.rs  the rounding that large triangles bring
+//! local.rs        what spot and point lights have in common
 //! ```
 
 mod directional;
+mod distance_limit;
+mod large_triangles;
 mod local;
 mod omni;
 mod pool;

@@ -1,4 +1,4 @@
-//! `OmniShadow`: a light that shines in every direction.
+//! Defines `OmniShadow`: the shadows of a light that shines in every direction.
 
 use glam::DVec3;
 
@@ -10,18 +10,22 @@ use crate::receive::{
 };
 use crate::{Bias, Filter, ShadowError, ShadowFrame, report::ShadowReport};
 
-/// What an [`OmniShadow`] is made of.
+/// Describes what an [`OmniShadow`] is made of. [`OmniShadow::new`] returns [`ShadowError::OutOfRange`] for values
+/// outside the ranges given here, and [`ShadowError::OverDeviceLimit`] for those beyond the device's limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OmniShadowDescriptor<'a> {
-    /// Label from which all objects derive theirs. Default "omni shadow".
+    /// Is the label from which all wgpu objects of the light derive theirs; "omni shadow" if `None`, the default.
     pub label: wgpu::Label<'a>,
-    /// Texels per side of each of the six faces, 1 up to the device's `max_texture_dimension_2d`. Default 1024.
+    /// Is the number of texels per side of each of the six faces: from 1 to the device's `max_texture_dimension_2d`.
+    /// The default is 1024. Cost and memory grow with its square; the blur and the displacement of an edge shrink in
+    /// proportion to it.
     pub map_size: u32,
-    /// How a map is looked up.
+    /// Selects how a map is sampled. The default is that of [`Filter`]. Every filter is accepted.
     pub filter: Filter,
-    /// How receivers are kept from shadowing themselves.
+    /// Selects how receivers are kept from shadowing themselves. The default is [`Bias::Auto`].
     pub bias: Bias,
-    /// Fraction of a light's range, 0..=1, over which shadows fade to light before they end there. Default 0: they end at once.
+    /// Is the fraction of a light's range, 0..=1, over which shadows fade to light before they end there. The default is
+    /// 0: they end at once.
     pub fade: f32,
 }
 
@@ -37,46 +41,52 @@ impl Default for OmniShadowDescriptor<'_> {
     }
 }
 
-/// A light at a place that shines in every direction.
+/// Describes a light at a position that shines in every direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OmniLight {
-    /// Absolute world position (f64). It may lie anywhere, on a surface or on a vertex included; what is nearer to it along
-    /// every axis than 1/1024 of its reach casts nothing.
+    /// Is the absolute world position (f64), finite. It may lie anywhere, even on a surface or on a vertex. Geometry
+    /// that is nearer to it along every axis than 1/1024 of the light's reach casts nothing; the reach is `range`, or
+    /// the distance of the farthest caster or receiver where that is smaller.
     pub position_world: DVec3,
-    /// Distance in world units beyond which the light neither draws casters nor shadows receivers (visibility is 1 there, and
-    /// the engine's attenuation should be 0); above 0, infinity allowed.
+    /// Is the distance in world units beyond which the light neither draws casters nor shadows receivers: above 0,
+    /// infinity allowed. Beyond it visibility is 1, and the engine's attenuation should be 0. Too small a value leaves
+    /// lit surfaces without shadows; too large a value draws casters whose shadows nobody sees.
     pub range: f32,
 }
 
-/// Shadows of a point light: six perspective faces as layers of one depth texture.
+/// Renders the shadows of a point light: six perspective faces, which are layers of one depth texture.
 ///
 /// # One pass or a pass for each face
-/// On a device with `Features::MULTIVIEW` and `Limits::max_multiview_view_count` of 6 or more, the faces can be drawn in one pass;
-/// on every other in a pass for each. Both give the same depths. One pass draws each caster once, into all six faces: it saves
-/// passes and draw calls, and puts every triangle through six faces instead of those that the caster touches. It is taken for a
-/// frame in which
+/// On a device with `Features::MULTIVIEW` and a `Limits::max_multiview_view_count` of 6 or more, the six faces can be
+/// drawn in one multiview pass; on any other device each face takes a pass. Both ways give the same depths. One pass
+/// draws each caster once, into all six faces. It saves passes and draw calls, but transforms every triangle for six
+/// faces instead of only for those that the caster touches. It is used for a frame in which
 ///
-/// - each face that anything casts into is drawn whole: none is kept, and none is made from what stands still;
-/// - every caster has a built-in vertex stage ([`CasterVertex::BuiltIn`](crate::caster::CasterVertex::BuiltIn)), tells its triangles
-///   ([`ShadowCaster::triangles`](crate::ShadowCaster::triangles)) and draws the same into every view ([`ShadowCaster::same_in_every_view`](crate::ShadowCaster::same_in_every_view)), as
+/// - each face that something casts into is drawn completely: no face is kept, and none is copied from a static-caster
+///   cache;
+/// - every caster has a built-in vertex stage ([`CasterVertex::BuiltIn`](crate::caster::CasterVertex::BuiltIn)),
+///   reports its triangles ([`ShadowCaster::triangles`](crate::ShadowCaster::triangles)) and draws the same into every
+///   view ([`ShadowCaster::same_in_every_view`](crate::ShadowCaster::same_in_every_view)), as
 ///   [`MeshCaster`](crate::MeshCaster) does;
-/// - no caster goes on beyond the light's range into a face that its nearer part does not touch;
+/// - no caster extends beyond the light's reach into a face that its nearer part does not touch;
 /// - 6 × the triangles of all casters < 4000 × the passes saved + 96 × the draw calls saved.
 ///
-/// The figures were measured by `cargo bench --bench cost` ("one pass for all faces") in software, where triangles are dear
-/// beside calls; a GPU would gain from more of them. A room with a few things in it is drawn in one pass, a detailed scene is
-/// not. Lights of a pool are always drawn in a pass for each face. Mesa's llvmpipe before 25.0.7 draws clipped triangles of one
-/// pass into wrong faces, and always gets a pass for each. [`ShadowReport::passes`] tells which it was.
+/// The constants were measured by `cargo bench --bench cost` ("one pass for all faces") on a software rasterizer, where
+/// triangles cost more in relation to calls than on a GPU; a GPU would profit from one pass for more triangles as well.
+/// A room with a few objects is drawn in one pass, a detailed scene is not. Lights of a pool always take a pass for
+/// each face. So do all lights on Mesa's llvmpipe before 25.0.7, which draws clipped triangles of one pass into wrong
+/// faces. [`ShadowReport::passes`] tells how many passes a frame took.
 #[derive(Debug)]
 pub struct OmniShadow {
     lights: LocalLights,
 }
 
 impl OmniShadow {
-    /// Makes texture and buffers. Until the first [`OmniShadow::record`], everything is lit.
+    /// Creates the light's texture and buffers. Until the first [`OmniShadow::record`], every surface is lit.
     ///
     /// # Errors
-    /// [`ShadowError`] for a descriptor out of range, or a device that cannot hold it.
+    /// Returns [`ShadowError`] for a descriptor with a value out of range, and for a device whose limits or memory do
+    /// not suffice or that is lost.
     pub fn new(
         device: &wgpu::Device,
         descriptor: &OmniShadowDescriptor<'_>,
@@ -104,15 +114,16 @@ impl OmniShadow {
         Ok(Self { lights })
     }
 
-    /// Fits the faces to the frame, culls, writes the uniforms and records the depth passes that are needed: a face into which
-    /// nothing casts, or on which no visible receiver lies, is neither drawn nor cleared.
+    /// Fits the faces to the frame, culls the casters, writes the uniforms, and records the depth passes that are
+    /// needed. A face into which nothing casts, or on which no visible receiver lies, is neither drawn nor cleared.
     ///
-    /// The encoder must be submitted before anything that asks for these shadows, and encoders in the order in which they were
-    /// recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)).
+    /// The encoder must be submitted before any work that samples these shadows, and encoders must be submitted in the
+    /// order in which they were recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)).
     ///
     /// # Errors
-    /// [`ShadowError`] for input that is not finite, or a range that is not above 0. Nothing is recorded then, and the last
-    /// good maps remain.
+    /// Returns [`ShadowError`] for a position that is not finite, for a range that is not above 0, for a view that
+    /// cannot be represented, for casters whose pipelines do not fit the light, and for a device that is lost or out of
+    /// memory. Nothing is recorded then, and the maps of the last successful frame remain.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -134,7 +145,7 @@ impl OmniShadow {
         self.lights.reset_history();
     }
 
-    /// Says that the maps no longer hold what was recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)): the
+    /// Declares the contents of the maps invalid ([what a kept map relies on](crate#what-a-kept-map-relies-on)): the
     /// next frame draws every view.
     pub fn invalidate(&mut self) {
         self.lights.invalidate();
@@ -142,7 +153,7 @@ impl OmniShadow {
 }
 
 impl OmniLight {
-    /// Returns the light in a slot of its maps if its numbers are sound.
+    /// Returns the light's views in slot `slot` of its maps if its position and range are valid.
     pub(crate) fn placement(
         &self,
         slot: u32,
@@ -163,8 +174,8 @@ impl OmniLight {
     }
 }
 
-/// Axes of the faces +x, -x, +y, -y, +z, -z. Their up vectors are those of a cross unfolded around -z: the four sides stand
-/// upright, and top and bottom join the side that looks along -z.
+/// Returns the axes of the faces +x, -x, +y, -y, +z, -z. Their up vectors are those of a cross that is unfolded around
+/// -z: the four sides are upright, and top and bottom join the side that looks along -z.
 fn cube_faces() -> [LightAxes; 6] {
     [
         (DVec3::X, DVec3::Y),

@@ -1,4 +1,5 @@
-//! Pools of local lights: many lights, one texture array, one bind group entry, one WGSL function that takes an index.
+//! Defines pools of local lights: many lights share one texture array, one bind group entry and one WGSL function,
+//! which takes an index.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -10,21 +11,27 @@ use crate::receive::{
 };
 use crate::{Bias, Filter, OmniLight, ShadowError, ShadowFrame, SpotLight, report::ShadowReport};
 
-/// What a pool is made of.
+/// Describes what a pool is made of. [`OmniShadowPool::new`] and [`SpotShadowPool::new`] return
+/// [`ShadowError::OutOfRange`] for values outside the ranges given here, and [`ShadowError::OverDeviceLimit`] for those
+/// beyond the device's limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoolDescriptor<'a> {
-    /// Label from which all objects derive theirs. Default "shadow pool".
+    /// Is the label from which all wgpu objects of the pool derive theirs; "shadow pool" if `None`, the default.
     pub label: wgpu::Label<'a>,
-    /// Lights that it can hold at once, fixed for its life: at least 1, and no more than the device's texture layers and
-    /// uniform bytes allow (42 point lights or 256 spots by WebGPU's defaults). Default 16.
+    /// Is the number of lights that the pool can contain at once, fixed for its lifetime: at least 1, and no more than
+    /// the device's limits on texture layers and uniform bytes allow (42 point lights or 256 spot lights with WebGPU's
+    /// default limits). The default is 16. The memory for all of them is allocated at once.
     pub capacity: u32,
-    /// Texels per side of each map, 1 up to the device's `max_texture_dimension_2d`. Default 512.
+    /// Is the number of texels per side of each map: from 1 to the device's `max_texture_dimension_2d`. The default is
+    /// 512. Cost and memory grow with its square; the blur and the displacement of an edge shrink in proportion to it.
     pub map_size: u32,
-    /// How a map is looked up.
+    /// Selects how a map is sampled. The default is that of [`Filter`]. A [`SpotShadowPool`] refuses filters for point
+    /// lights only.
     pub filter: Filter,
-    /// How receivers are kept from shadowing themselves.
+    /// Selects how receivers are kept from shadowing themselves. The default is [`Bias::Auto`].
     pub bias: Bias,
-    /// Fraction of a light's range, 0..=1, over which shadows fade to light before they end there. Default 0: they end at once.
+    /// Is the fraction of a light's range, 0..=1, over which shadows fade to light before they end there. The default is
+    /// 0: they end at once.
     pub fade: f32,
 }
 
@@ -41,47 +48,52 @@ impl Default for PoolDescriptor<'_> {
     }
 }
 
-/// A light's place in a pool, from [`OmniShadowPool::insert`] or [`SpotShadowPool::insert`].
+/// Identifies a light in a pool. [`OmniShadowPool::insert`] and [`SpotShadowPool::insert`] return it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ShadowSlot {
     index: u32,
-    /// Tells pools, and lights that had the slot before, apart.
+    /// Is unique in the process. It distinguishes this slot from slots of other pools and from earlier uses of the same
+    /// index.
     ticket: u64,
 }
 
 impl ShadowSlot {
-    /// The index to hand to the WGSL function: below the pool's capacity, the light's own until it is removed.
+    /// Returns the index to pass to the WGSL function. It is below the pool's capacity, and belongs to this light alone
+    /// until the light is removed.
     pub const fn index(&self) -> u32 {
         self.index
     }
 }
 
-/// A light of a pool in a frame.
+/// Describes a light of a pool in a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoolLight<L> {
-    /// Its slot.
+    /// Is the slot of the light. A frame may list each slot at most once.
     pub slot: ShadowSlot,
-    /// The light.
+    /// Describes the light.
     pub light: L,
-    /// Who is refreshed first where a budget does not suffice: at least 0, finite; for instance the light's share of the
-    /// picture. Only the proportions count. A light that is put off counts for one frame more each time, so that none above 0
-    /// starves; one at 0 has what the others leave. An importance above 0 counts for at least 1/4096 of the greatest in the
-    /// frame: of `n` lights that always change, one of importance `i` beside a greatest of `g` waits at most
-    /// `(n - 1) min(g / i, 4096) + n` frames.
+    /// Determines which lights are refreshed first where the budget does not suffice for all: at least 0 and finite,
+    /// for example the fraction of the image that the light covers. Only the ratios between importances matter. Each
+    /// frame for which a light is deferred raises its urgency, so that none of importance above 0 waits for ever;
+    /// lights of importance 0 are refreshed from what the others leave of the budget. An importance above 0 counts for
+    /// at least 1/4096 of the greatest in the frame: of `n` lights that change in every frame, one of importance `i`
+    /// beside a greatest importance of `g` waits at most `(n - 1) min(g / i, 4096) + n` frames.
     pub importance: f32,
 }
 
-/// Slots of a pool and the tickets they are given out under.
+/// Holds the slots of a pool.
 #[derive(Debug)]
 struct Slots {
+    /// Has one entry per slot: the ticket of the light in it, or `None` for a free slot.
     tickets: Vec<Option<u64>>,
-    /// Which were named in the frame being checked.
+    /// Has one entry per slot, true for those already listed in the frame that is being checked.
     seen: Vec<bool>,
 }
 
 static NEXT_TICKET: AtomicU64 = AtomicU64::new(0);
 
 impl Slots {
+    /// Occupies a free slot.
     fn insert(&mut self) -> Result<ShadowSlot, ShadowError> {
         let free = self.tickets.iter().position(Option::is_none);
         let index = free.ok_or(ShadowError::PoolFull {
@@ -95,6 +107,7 @@ impl Slots {
         })
     }
 
+    /// Accepts slots of this pool that have not been removed.
     fn check(&self, field: &'static str, slot: ShadowSlot) -> Result<(), ShadowError> {
         match self.tickets.get(slot.index as usize) {
             Some(Some(ticket)) if *ticket == slot.ticket => Ok(()),
@@ -105,6 +118,7 @@ impl Slots {
         }
     }
 
+    /// Accepts frames that list each light once, with a valid importance.
     fn check_frame<L>(&mut self, lights: &[PoolLight<L>]) -> Result<(), ShadowError> {
         self.seen.clear();
         self.seen.resize(self.tickets.len(), false);
@@ -128,7 +142,7 @@ impl Slots {
     }
 }
 
-/// The two pools differ in their lights alone.
+/// Defines a pool. The two pools differ only in the lights that they contain.
 macro_rules! pool {
     (
         $(#[$doc:meta])* $pool:ident, $light:ty, $views:literal, $selection:expr, $filter_check:path
@@ -138,15 +152,16 @@ macro_rules! pool {
         pub struct $pool {
             lights: LocalLights,
             slots: Slots,
-            /// Empty between frames; kept for its memory.
+            /// Is reused from frame to frame for its memory.
             placements: Vec<LocalPlacement>,
         }
 
         impl $pool {
-            /// Makes texture and buffers for all slots.
+            /// Creates the texture and the buffers for all slots.
             ///
             /// # Errors
-            /// [`ShadowError`] for a descriptor out of range, or a device that cannot hold it.
+            /// Returns [`ShadowError`] for a descriptor with a value out of range, and for a device whose limits or
+            /// memory do not suffice or that is lost.
             pub fn new(
                 device: &wgpu::Device,
                 descriptor: &PoolDescriptor<'_>,
@@ -187,41 +202,44 @@ macro_rules! pool {
                 })
             }
 
-            /// Takes a light in.
+            /// Reserves a slot for a light. The light is lit everywhere until its map is first drawn.
             ///
             /// # Errors
-            /// [`ShadowError::PoolFull`] where all slots are taken.
+            /// Returns [`ShadowError::PoolFull`] if every slot is occupied.
             pub fn insert(&mut self) -> Result<ShadowSlot, ShadowError> {
                 let slot = self.slots.insert()?;
                 self.lights.reset(slot.index);
                 Ok(slot)
             }
 
-            /// Gives a light's slot back.
+            /// Frees a light's slot.
             ///
             /// # Errors
-            /// [`ShadowError::UnknownSlot`] for a slot that is not this pool's, or no longer.
+            /// Returns [`ShadowError::UnknownSlot`] for a slot of another pool or one that was removed already.
             pub fn remove(&mut self, slot: ShadowSlot) -> Result<(), ShadowError> {
                 self.slots.check("slot", slot)?;
                 self.slots.tickets[slot.index as usize] = None;
                 Ok(())
             }
 
-            /// Fits the lights to the frame, culls, writes the uniforms and records the depth passes that are needed and that
-            /// the budget allows. A light in which nothing changed costs no pass. Lights of the pool that are not listed are lit
-            /// everywhere.
+            /// Fits the lights to the frame, culls the casters, writes the uniforms, and records the depth passes that
+            /// are needed and that the budget allows. A light in which nothing changed takes no pass. Lights of the
+            /// pool that are not listed cast no shadow in this frame: every surface is lit.
             ///
-            /// `max_views` is the budget: the most depth passes (over `map_size`² texels each) to draw in this frame; none for no
-            /// limit. A view is one pass, or two where the layer that is kept of what stands still is drawn anew. The most
-            /// important lights are refreshed first, and at least one is, whatever it takes; the others show their last map and
-            /// are reported as deferred. A light that has never been drawn, or not since `invalidate`, is lit until its turn.
+            /// `max_views` is the budget: the largest number of depth passes (over `map_size`² texels each) to record
+            /// in this frame, or `None` for no limit. A view takes one pass, or two where its static-caster cache is
+            /// drawn as well. The most important lights are refreshed first, and at least one is, whatever it costs.
+            /// The others keep their last map and are reported as [`Deferred`](crate::report::ViewStatus::Deferred). A
+            /// light that has never been drawn, or not since `invalidate`, is lit everywhere until it is refreshed.
             ///
-            /// The encoder must be submitted before anything that asks for these shadows, and encoders in the order in which
-            /// they were recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)).
+            /// The encoder must be submitted before any work that samples these shadows, and encoders must be submitted
+            /// in the order in which they were recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)).
             ///
             /// # Errors
-            /// [`ShadowError`] for lights, bounds or a camera that are not sound, or slots that are not this pool's. Nothing
-            /// is recorded then, and the last good maps remain.
+            /// Returns [`ShadowError`] for a slot that is not this pool's or is listed twice, for an importance that is
+            /// negative or not finite, for a light with an invalid value, for a view that cannot be represented, for
+            /// casters whose pipelines do not fit the pool, and for a device that is lost or out of memory. Nothing is
+            /// recorded then, and the maps of the last successful frame remain.
             pub fn record(
                 &mut self,
                 encoder: &mut wgpu::CommandEncoder,
@@ -241,7 +259,7 @@ macro_rules! pool {
                 report
             }
 
-            /// Returns the light's depth texture, uniforms and report.
+            /// Returns the pool's depth texture, uniforms and report.
             pub fn maps(&self) -> &ShadowMaps {
                 self.lights.maps()
             }
@@ -252,9 +270,9 @@ macro_rules! pool {
                 self.lights.reset_history();
             }
 
-            /// Says that the maps no longer hold what was recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)): the
-            /// next frame draws every view, or under a budget as many as it allows, and the rest is lit
-            /// until its turn.
+            /// Declares the contents of the maps invalid ([what a kept map relies
+            /// on](crate#what-a-kept-map-relies-on)): the next frame draws every view, or as many as its budget allows;
+            /// the other lights are lit everywhere until they are refreshed.
             pub fn invalidate(&mut self) {
                 self.lights.invalidate();
             }
@@ -263,9 +281,10 @@ macro_rules! pool {
 }
 
 pool!(
-    /// Shadows of point lights that come and go: six layers of one texture array a slot.
+    /// Renders the shadows of point lights that are inserted and removed at run time. Each slot has six layers of one
+    /// texture array.
     ///
-    /// In WGSL: `shadow_NAME(slot.index(), position, normal)`.
+    /// The WGSL function is `shadow_NAME(slot.index(), position, normal)`.
     OmniShadowPool,
     OmniLight,
     6,
@@ -274,9 +293,10 @@ pool!(
 );
 
 pool!(
-    /// Shadows of spot lights that come and go: one layer of one texture array a slot.
+    /// Renders the shadows of spot lights that are inserted and removed at run time. Each slot has one layer of one
+    /// texture array.
     ///
-    /// In WGSL: `shadow_NAME(slot.index(), position, normal)`.
+    /// The WGSL function is `shadow_NAME(slot.index(), position, normal)`.
     SpotShadowPool,
     SpotLight,
     1,

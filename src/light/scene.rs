@@ -1,4 +1,5 @@
-//! What a frame brings for all lights: origin, cameras, casters and receivers, checked and gathered once.
+//! Defines the input of a frame for all lights: origin, cameras, casters and receivers, which are checked and collected
+//! once.
 
 use glam::{DVec3, Vec3};
 
@@ -7,38 +8,45 @@ use crate::check;
 use crate::fit::{CameraFrustum, HalfSpaces, Region};
 use crate::{Aabb, CameraView, ShadowError};
 
-/// Which receivers the shadows of a frame are for: nothing else needs a map.
+/// Selects the receivers for which the shadows of a frame are rendered. Maps cover no other surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Coverage<'a> {
-    /// What any of these cameras sees: one for an ordinary frame, several for the eyes of a headset, a split screen or a mirror.
-    /// All of them look up the same maps. Of no camera nothing is seen, and nothing is drawn.
+    /// Covers what any of these cameras sees: one for an ordinary frame, several for the eyes of a headset, a split
+    /// screen or a mirror. All of them sample the same maps. With an empty list nothing counts as seen, and nothing is
+    /// drawn.
     Cameras(&'a [CameraView]),
-    /// What lies in a box of render space, as in the textbook. The window of a directional light is then this box, held by its
-    /// first cascade alone, whatever the casters. Surfaces outside are lit.
+    /// Covers what lies in a box of render space, as textbook examples do. The light-space bounds of a directional
+    /// light then follow from this box, whatever the casters, and its first cascade alone covers it. Surfaces outside
+    /// the box are lit. The box must be finite; an empty one covers nothing.
     Bounds(Aabb),
-    /// Everything that receives, wherever it is: for scenes that are small, or seen from everywhere.
+    /// Covers all receivers, wherever they are: for scenes that are small or that are seen from everywhere.
     Everything,
 }
 
-/// What a frame brings. The casters are borrowed for as long as lights are recorded with the frame, the rest only while it is
-/// made.
+/// Describes the input of a frame. The casters stay borrowed for as long as lights are recorded with the frame, all
+/// other fields only until [`ShadowScene::frame`] returns.
 #[derive(Clone, Copy)]
 pub struct ShadowFrameDescriptor<'d, 'c> {
-    /// World position of render space's origin, f64. Zero unless the engine renders relative to its camera. Texels keep their
-    /// places in the world, so f64 must tell them apart there: with texels of `t` units, in maps of 64 or more a side, a frame is
-    /// accepted up to at least `2⁴⁷ t` units from the world's origin, 1.4·10¹² for a centimetre. Some hundred times as far it is
-    /// [`ShadowError::ViewNotRepresentable`].
+    /// Is the world position of the origin of render space (f64, finite). It is zero unless the engine renders relative
+    /// to its camera. An origin that differs from the one the engine subtracts displaces all shadows.
+    ///
+    /// The texels of a directional light keep their positions in the world, so f64 must distinguish them there. With
+    /// texels of `t` units, in maps of 64 or more texels per side, a frame is accepted up to a distance from the world
+    /// origin of at least `2⁴⁷ t` units, which is 1.4·10¹² units for texels of a hundredth of a unit. At some hundred
+    /// times that distance the light's `record` returns [`ShadowError::ViewNotRepresentable`].
     pub origin: DVec3,
-    /// Which receivers the shadows are for.
+    /// Selects the receivers for which the shadows are rendered.
     pub coverage: Coverage<'d>,
-    /// Everything that may cast. All of it receives as well, unless [`ShadowCaster::receives`] says otherwise.
+    /// Lists all objects that may cast. All of them receive as well, unless [`ShadowCaster::receives`] returns false.
     pub casters: &'c [&'c dyn ShadowCaster],
-    /// Bounds in render space of surfaces that receive and do not cast.
+    /// Lists the bounds, in render space, of the surfaces that receive and do not cast. Each must be finite or empty;
+    /// others are left out of the frame and named by [`ShadowFrame::broken_bounds`]. A surface that is missing here may
+    /// lie outside the maps, and is then lit.
     pub receivers: &'d [Aabb],
 }
 
-/// The scene that lights share. It keeps the memory of its lists from frame to frame.
+/// Holds the scene that lights share. It reuses the memory of its lists from frame to frame.
 #[derive(Debug, Default)]
 pub struct ShadowScene {
     answers: CasterAnswers,
@@ -55,12 +63,14 @@ impl ShadowScene {
         Self::default()
     }
 
-    /// Checks a frame and gathers the bounds of its casters, once for all lights that are recorded with it. Every caster is asked
-    /// here what it is; while the lights are recorded it is only drawn.
+    /// Checks a frame and collects the bounds of its casters, once for all lights that are recorded with it. The
+    /// methods of every caster but [`pipeline`](ShadowCaster::pipeline) and [`draw`](ShadowCaster::draw) are called
+    /// here; while the lights are recorded, only these two are called.
     ///
     /// # Errors
-    /// [`ShadowError`] for an origin, camera or covered box that is not finite or describes no volume. Bounds of casters and
-    /// receivers that are not finite are no error: [`ShadowFrame::broken_bounds`] names them.
+    /// Returns [`ShadowError`] for an origin that is not finite, for a camera whose matrices are not finite and
+    /// invertible or whose distance limit is not above 0, and for a covered box that is neither finite nor empty.
+    /// Bounds of casters and receivers that are not finite are no error: [`ShadowFrame::broken_bounds`] names them.
     pub fn frame<'a>(
         &'a mut self,
         descriptor: &ShadowFrameDescriptor<'_, 'a>,
@@ -117,30 +127,30 @@ impl ShadowScene {
     }
 }
 
-/// A frame of a [`ShadowScene`], checked: what the lights are recorded with.
+/// Holds a checked frame of a [`ShadowScene`]. Lights are recorded with it.
 #[derive(Clone, Copy)]
 pub struct ShadowFrame<'a> {
     pub(crate) origin: DVec3,
     pub(crate) region: Region<'a>,
-    /// The same region as half-spaces: receivers count where they lie in one of these.
+    /// Holds the same region as intersections of half-spaces: receivers count where they lie in one of these.
     pub(crate) seen: &'a [HalfSpaces],
     pub(crate) casters: FrameCasters<'a>,
-    /// Bounds of all that receives.
+    /// Holds the bounds of all receivers.
     pub(crate) receivers: &'a [Aabb],
-    /// Holds, for each receiver, the index of the caster whose surface it is, if it is one's.
+    /// Holds, for each receiver, the index of the caster whose surface it is, or `None` where it is not a caster's.
     pub(crate) receiver_casters: &'a [Option<u32>],
 }
 
 impl ShadowFrame<'_> {
-    /// Returns the bounds that are infinite or not numbers. Casters and receivers with such bounds are left out of the
-    /// frame, which is otherwise as it would be without them: in a running engine, one broken object must not take the
-    /// shadows of all others. Each light's report names them as well.
+    /// Returns the bounds of casters and receivers that have a NaN or an infinite corner and are not empty. Their
+    /// objects are left out of the frame, and all others keep their shadows. Each light's report lists the same bounds
+    /// ([`ShadowReport::broken_bounds`](crate::report::ShadowReport::broken_bounds)).
     pub fn broken_bounds(&self) -> &[BrokenBounds] {
         self.casters.broken
     }
 
-    /// Returns where the first camera stands, in render space.
-    pub(crate) fn viewer_render(&self) -> Option<Vec3> {
+    /// Returns the position of the first camera in render space, or `None` where the frame has no camera.
+    pub(crate) fn camera_render(&self) -> Option<Vec3> {
         match self.region {
             Region::Cameras(cameras) => cameras.first().map(CameraFrustum::eye_render),
             Region::Bounds(_) | Region::Everything => None,

@@ -1,4 +1,4 @@
-//! `SpotShadow`: a light that shines into a cone.
+//! Defines `SpotShadow`: the shadows of a light that shines into a cone.
 
 use glam::{DVec3, Vec3};
 
@@ -11,18 +11,21 @@ use crate::receive::{
 };
 use crate::{Bias, Filter, ShadowError, ShadowFrame, report::ShadowReport};
 
-/// What a [`SpotShadow`] is made of.
+/// Describes what a [`SpotShadow`] is made of. [`SpotShadow::new`] returns [`ShadowError::OutOfRange`] for values
+/// outside the ranges given here, and [`ShadowError::OverDeviceLimit`] for those beyond the device's limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpotShadowDescriptor<'a> {
-    /// Label from which all objects derive theirs. Default "spot shadow".
+    /// Is the label from which all wgpu objects of the light derive theirs; "spot shadow" if `None`, the default.
     pub label: wgpu::Label<'a>,
-    /// Texels per side of the map, 1 up to the device's `max_texture_dimension_2d`. Default 1024.
+    /// Is the number of texels per side of the map: from 1 to the device's `max_texture_dimension_2d`. The default is
+    /// 1024. Cost and memory grow with its square; the blur and the displacement of an edge shrink in proportion to it.
     pub map_size: u32,
-    /// How a map is looked up.
+    /// Selects how the map is sampled. The default is that of [`Filter`]. Filters for point lights only are refused.
     pub filter: Filter,
-    /// How receivers are kept from shadowing themselves.
+    /// Selects how receivers are kept from shadowing themselves. The default is [`Bias::Auto`].
     pub bias: Bias,
-    /// Fraction of a light's range, 0..=1, over which shadows fade to light before they end there. Default 0: they end at once.
+    /// Is the fraction of a light's range, 0..=1, over which shadows fade to light before they end there. The default is
+    /// 0: they end at once.
     pub fade: f32,
 }
 
@@ -38,38 +41,44 @@ impl Default for SpotShadowDescriptor<'_> {
     }
 }
 
-/// A light at a place that shines into a cone.
+/// Describes a light at a position that shines into a cone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpotLight {
-    /// Absolute world position (f64); what is nearer to it along its axis than 1/1024 of its reach casts nothing.
+    /// Is the absolute world position (f64), finite. Geometry that is nearer to it along the light's axis than 1/1024
+    /// of the light's reach casts nothing; the reach is `range`, or the distance of the farthest caster or receiver
+    /// where that is smaller.
     pub position_world: DVec3,
-    /// Direction in which it shines, any length but zero; world axes.
+    /// Is the direction in which the light shines, in world axes, finite and of any length but zero.
     pub direction: Vec3,
-    /// Angle in radians from the axis to the rim of the cone (half of what it spans); above 0, below π/2. Outside the cone
-    /// visibility is 1: attenuation belongs to the engine. A map is flat, so its texels grow toward the rim; from
-    /// [`SpotLight::WIDEST_SENSIBLE_OUTER_ANGLE`] on, a point light of the same memory is finer in the middle.
+    /// Is the angle in radians from the axis to the rim of the cone, half of what the cone spans: above 0 and below
+    /// π/2. Outside the cone visibility is 1, since attenuation belongs to the engine; an angle below that of the
+    /// engine's attenuation leaves the rim without shadows. The map is flat, so its texels grow toward the rim. From
+    /// [`SpotLight::WIDEST_SENSIBLE_OUTER_ANGLE`] on, a point light with the same memory has finer texels in the middle
+    /// of the cone.
     pub outer_angle_radians: f32,
-    /// Distance in world units beyond which the light neither draws casters nor shadows receivers; above 0, infinity allowed.
+    /// Is the distance in world units beyond which the light neither draws casters nor shadows receivers: above 0,
+    /// infinity allowed. Beyond it visibility is 1.
     pub range: f32,
 }
 
 impl SpotLight {
-    /// Half-angle at which one map of 6 N² texels is as fine in its middle as a cube's faces of N² texels: atan √6 = 67.8°.
-    /// An [`OmniShadow`](crate::OmniShadow) serves wider cones better.
+    /// Is the half-angle, in radians, at which one map of 6 N² texels is as fine in its middle as the faces of a cube
+    /// with N² texels each: atan √6 = 67.8°. An [`OmniShadow`](crate::OmniShadow) suits wider cones better.
     pub const WIDEST_SENSIBLE_OUTER_ANGLE: f32 = 1.183_199_6;
 }
 
-/// Shadows of a spot light: one perspective view in a depth texture of one layer.
+/// Renders the shadows of a spot light: one perspective view in a depth texture of one layer.
 #[derive(Debug)]
 pub struct SpotShadow {
     lights: LocalLights,
 }
 
 impl SpotShadow {
-    /// Makes texture and buffers. Until the first [`SpotShadow::record`], everything is lit.
+    /// Creates the light's texture and buffers. Until the first [`SpotShadow::record`], every surface is lit.
     ///
     /// # Errors
-    /// [`ShadowError`] for a descriptor out of range, or a device that cannot hold it.
+    /// Returns [`ShadowError`] for a descriptor with a value out of range, and for a device whose limits or memory do
+    /// not suffice or that is lost.
     pub fn new(
         device: &wgpu::Device,
         descriptor: &SpotShadowDescriptor<'_>,
@@ -97,14 +106,16 @@ impl SpotShadow {
         Ok(Self { lights })
     }
 
-    /// Fits the view to the frame, culls, writes the uniforms and records the depth pass if it is needed.
+    /// Fits the view to the frame, culls the casters, writes the uniforms, and records the depth pass if it is needed.
     ///
-    /// The encoder must be submitted before anything that asks for these shadows, and encoders in the order in which they were
-    /// recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)).
+    /// The encoder must be submitted before any work that samples these shadows, and encoders must be submitted in the
+    /// order in which they were recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)).
     ///
     /// # Errors
-    /// [`ShadowError`] for input that is not finite, or an angle or range out of its limits. Nothing is recorded then, and the
-    /// last good map remains.
+    /// Returns [`ShadowError`] for a position or direction that is not finite, for a direction of length zero, for an
+    /// angle or range outside its limits, for a view that cannot be represented, for casters whose pipelines do not fit
+    /// the light, and for a device that is lost or out of memory. Nothing is recorded then, and the map of the last
+    /// successful frame remains.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -126,15 +137,15 @@ impl SpotShadow {
         self.lights.reset_history();
     }
 
-    /// Says that the maps no longer hold what was recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)): the
-    /// next frame draws every view.
+    /// Declares the contents of the map invalid ([what a kept map relies on](crate#what-a-kept-map-relies-on)): the
+    /// next frame draws it.
     pub fn invalidate(&mut self) {
         self.lights.invalidate();
     }
 }
 
 impl SpotLight {
-    /// Returns the light in a slot of its maps if its numbers are sound.
+    /// Returns the light's view in slot `slot` of its maps if its position, direction, angle and range are valid.
     pub(crate) fn placement(
         &self,
         slot: u32,

@@ -1,4 +1,4 @@
-//! One bind group for a set of lights, and the WGSL for exactly that set.
+//! Creates one bind group for a set of lights, and the WGSL for exactly that set.
 
 use crate::error::BindingsError;
 use crate::error::DeviceError;
@@ -11,17 +11,20 @@ use crate::receive::texel_access::TexelAccess;
 use crate::receive::uniforms::view_uniform_bytes;
 use crate::shader;
 
-/// What a [`ShadowBindings`] is made of.
+/// Describes what a [`ShadowBindings`] is made of.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowBindingsDescriptor<'a> {
-    /// Label of layout and bind group.
+    /// Labels the bind group and its layout; "shadow bindings" if `None`, the default.
     pub label: wgpu::Label<'a>,
-    /// Index of the bind group in the engine's pipelines. Default 1.
+    /// Is the index of the bind group in the engine's pipelines, below the device's `max_bind_groups`. The default is
+    /// 1.
     pub group: u32,
-    /// Stages that call the functions. Default `FRAGMENT`; add `COMPUTE` for volumetric light.
+    /// Lists the shader stages that call the functions. The default is `FRAGMENT`; add `COMPUTE` for volumetric light,
+    /// for example. A pipeline that calls them from a stage missing here fails validation.
     pub visibility: wgpu::ShaderStages,
-    /// The lights by name. A light named `sun` is asked through `shadow_sun(position, normal)`, a pool named `lamps` through
-    /// `shadow_lamps(index, position, normal)` with the index of the light's slot. An index that no slot has is lit.
+    /// Lists the lights by name; the default is none. A light named `sun` is sampled by `shadow_sun(position, normal)`,
+    /// and a pool named `lamps` by `shadow_lamps(index, position, normal)` with the index of the light's slot. For an
+    /// index that no slot has, the result is lit. [`BindingsError::Name`] states which names are permitted.
     pub lights: &'a [(&'a str, &'a ShadowMaps)],
 }
 
@@ -36,22 +39,25 @@ impl Default for ShadowBindingsDescriptor<'_> {
     }
 }
 
-/// A bind group with the maps of a set of lights, and the WGSL that asks them.
+/// Holds a bind group with the maps of a set of lights, and the WGSL that samples them.
 ///
 /// The WGSL has one function per light, `shadow_NAME(position: vec3<f32>, normal: vec3<f32>) -> f32` (for pools
-/// `shadow_NAME(index: u32, position: vec3<f32>, normal: vec3<f32>) -> f32`): visibility in [0, 1] of
-/// the light from `position` (render space) on a surface with geometric normal `normal` (unit length, on the side that is
-/// shaded). Where the map says nothing, beyond its sides or its far plane, it is 1.
+/// `shadow_NAME(index: u32, position: vec3<f32>, normal: vec3<f32>) -> f32`). It returns the visibility in [0, 1] of
+/// the light from `position` (render space) on a surface with the geometric normal `normal` (unit length, on the side
+/// that is shaded). Where no map covers the position, it returns 1.
 ///
-/// `shadow_geometric_normal(position: vec3<f32>, toward_viewer: vec3<f32>) -> vec3<f32>` is such a normal, from screen-space
-/// derivatives, for fragment shaders in uniform control flow. `toward_viewer` is a vector of any length but zero from the surface
-/// to the side that is looked at: `camera_position - position`, or the reverse of an orthographic camera's direction. An
-/// interpolated shading normal will do too, but errs at silhouettes. Where the camera's projection mirrors does not matter.
+/// `shadow_geometric_normal(position: vec3<f32>, toward_viewer: vec3<f32>) -> vec3<f32>` returns such a normal,
+/// computed from screen-space derivatives, for fragment shaders in uniform control flow. `toward_viewer` is a vector of
+/// any length but zero from the surface to the side that is looked at: `camera_position - position`, or the reverse of
+/// an orthographic camera's view direction. An interpolated shading normal also works, but fails at silhouettes. The
+/// result is the same for projections that mirror.
 ///
-/// `shadow_view_NAME(position)` (for pools with the index in front) tells which view serves a place, for a tint of cascades or
-/// faces: the number of the layer, or the number of layers where none does.
-/// The variables `shadow_map_NAME` and `shadow_views_NAME` are the light's own texture (`texture_depth_2d_array`, but see
-/// [`ShadowBindings::new`]) and `array<ShadowViewUniform, N>`, for engines that want a lookup of their own beside it.
+/// `shadow_view_NAME(position)` (for pools with the index as its first argument) returns the layer of the view that
+/// covers a position, or the number of layers where none does. It serves to tint cascades or faces.
+///
+/// The variables `shadow_map_NAME` and `shadow_views_NAME` are the light's texture (`texture_depth_2d_array`, but see
+/// [`ShadowBindings::new`]) and its uniforms (`array<ShadowViewUniform, N>`), for engines that add lookups of their
+/// own.
 #[derive(Debug)]
 pub struct ShadowBindings {
     layout: wgpu::BindGroupLayout,
@@ -61,15 +67,15 @@ pub struct ShadowBindings {
 }
 
 impl ShadowBindings {
-    /// Makes layout, bind group and WGSL. Do this once for a set of lights; per frame there is nothing to update.
+    /// Creates layout, bind group and WGSL. This is needed once for a set of lights; frames need no update.
     ///
     /// Where the device's shaders cannot gather (OpenGL ES 3.0, WebGL 2), the maps of all filters but
-    /// [`Filter::Hardware`](crate::Filter::Hardware) are `texture_2d_array<f32>`, and each gather is four samples: the same
-    /// visibilities at up to four times the lookups.
+    /// [`Filter::Hardware`](crate::Filter::Hardware) are bound as `texture_2d_array<f32>`, and each gather becomes four
+    /// samples: visibilities are the same, at up to four times as many texture instructions.
     ///
     /// # Errors
-    /// [`BindingsError`] for names that are not WGSL identifiers or not distinct, for sets that exceed the device's limits, and
-    /// for a device that is lost, out of memory, or not the lights' own.
+    /// Returns [`BindingsError`] for names that are not permitted or not distinct, for lights that exceed the device's
+    /// limits, for lights of another device, and for a device that is lost or out of memory.
     pub fn new(
         device: &wgpu::Device,
         descriptor: &ShadowBindingsDescriptor<'_>,
@@ -114,27 +120,29 @@ impl ShadowBindings {
         })
     }
 
-    /// Layout for the engine's pipeline layouts, at index [`ShadowBindings::group`].
+    /// Returns the layout of the bind group. The engine's pipeline layouts need it at index [`ShadowBindings::group`].
     pub fn layout(&self) -> &wgpu::BindGroupLayout {
         &self.layout
     }
 
-    /// The bind group to set while surfaces are shaded.
+    /// Returns the bind group, to be set at index [`ShadowBindings::group`] while surfaces are shaded.
     pub fn bind_group(&self) -> &wgpu::BindGroup {
         &self.bind_group
     }
 
-    /// Index of the bind group.
+    /// Returns the index of the bind group.
     pub fn group(&self) -> u32 {
         self.group
     }
 
-    /// WGSL for exactly this set, without directives: put it before or after the engine's own.
+    /// Returns the WGSL for exactly this set of lights. It contains no directives and can be put before or after the
+    /// engine's own.
     pub fn wgsl(&self) -> &str {
         &self.wgsl
     }
 }
 
+/// Accepts names that can become part of WGSL identifiers and differ from each other.
 fn check_names(lights: &NamedMaps<'_>) -> Result<(), BindingsError> {
     for (index, (name, _)) in lights.iter().enumerate() {
         let starts = name.starts_with(|c: char| c.is_ascii_lowercase());
@@ -157,7 +165,8 @@ fn check_names(lights: &NamedMaps<'_>) -> Result<(), BindingsError> {
     Ok(())
 }
 
-/// Would what is emitted for a light meet a name of the library's own: of a module, a sampler, or another light's map or views?
+/// Returns whether an identifier that is emitted for a light of this name could coincide with one of the library's own:
+/// of a module, a sampler, or the map, views or view function of another light.
 fn is_taken(name: &str) -> bool {
     let identifiers =
         ["", "view_", "views_", "map_"].map(|prefix| format!("shadow_{prefix}{name}"));
@@ -174,6 +183,7 @@ fn is_taken(name: &str) -> bool {
         || name.starts_with("views_")
 }
 
+/// Accepts sets of lights for whose bindings the device's limits suffice.
 fn check_limits(
     device: &wgpu::Device,
     group: u32,

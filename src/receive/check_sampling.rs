@@ -1,10 +1,10 @@
-//! What a filter and a bias must be: each failure names field, rule and value.
+//! Checks filters and biases. Each failure names the field, the rule and the value.
 
 use crate::ShadowError;
 use crate::check::in_range;
 use crate::receive::{Bias, Filter};
 
-/// A filter that a light with a single map plane at a time can use.
+/// Accepts valid filters that work within one view of a light: all but those for point lights only.
 pub(crate) fn check_planar_filter(field: &'static str, planar: Filter) -> Result<(), ShadowError> {
     in_range(
         field,
@@ -15,12 +15,13 @@ pub(crate) fn check_planar_filter(field: &'static str, planar: Filter) -> Result
     check_filter(field, planar)
 }
 
+/// Accepts filters whose parameters are in range.
 pub(crate) fn check_filter(field: &'static str, filter: Filter) -> Result<(), ShadowError> {
     if filter.directions().is_some() {
         let radius = filter.radius_world();
         return in_range(
             field,
-            "of a finite radius above 0",
+            "a filter with a finite radius above 0",
             radius > 0.0 && radius.is_finite(),
             radius,
         );
@@ -28,7 +29,7 @@ pub(crate) fn check_filter(field: &'static str, filter: Filter) -> Result<(), Sh
     if let Filter::Pcss { light_size } | Filter::PcssRotated { light_size } = filter {
         return in_range(
             field,
-            "of a finite light size above 0",
+            "a filter with a finite light size above 0",
             light_size > 0.0 && light_size.is_finite(),
             light_size,
         );
@@ -36,18 +37,19 @@ pub(crate) fn check_filter(field: &'static str, filter: Filter) -> Result<(), Sh
     let sharpness = filter.sharpness();
     in_range(
         field,
-        "of a finite sharpness of at least 1",
+        "a filter with a finite sharpness of at least 1",
         sharpness >= 1.0 && sharpness.is_finite(),
         sharpness,
     )
 }
 
+/// Accepts biases whose parameters are in range.
 pub(crate) fn check_bias(field: &'static str, bias: Bias) -> Result<(), ShadowError> {
     let (constant, slope) = bias.manual();
     let valid = |value: f32| value >= 0.0 && value.is_finite();
     in_range(
         field,
-        "of finite constant and slope of at least 0",
+        "a bias with a finite constant and slope of at least 0",
         valid(constant) && valid(slope),
         format_args!("constant {constant}, slope {slope}"),
     )

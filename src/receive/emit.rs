@@ -1,4 +1,4 @@
-//! The WGSL of a set of lights: the modules that they use, the bindings, and the functions of each light.
+//! Emits the WGSL of a set of lights: the modules that they use, the bindings, and the functions of each light.
 
 use crate::error::BindingsError;
 use crate::receive::Bias;
@@ -9,8 +9,8 @@ use crate::receive::template;
 use crate::receive::texel_access::TexelAccess;
 use crate::shader;
 
-/// Returns the WGSL for `lights` in bind group `group`. `samplers` are the samplers that their filters use, in the order of their
-/// bindings, and `access` is how shaders of the device read single texels.
+/// Returns the WGSL for `lights` in bind group `group`. `samplers` lists the samplers that their filters use, in the
+/// order of their bindings. `access` states how shaders of the device read single texels.
 pub(crate) fn wgsl(
     group: u32,
     lights: &NamedMaps<'_>,
@@ -69,7 +69,7 @@ fn modules(
     modules
 }
 
-/// Returns the function `shadow_view_NAME`, which selects the view that serves a position.
+/// Returns the function `shadow_view_NAME`, which selects the view that covers a position.
 fn view_function(name: &str, maps: &SampledMaps<'_>) -> String {
     let index = index(maps);
     let view_count = &view_count(maps);
@@ -98,7 +98,7 @@ fn view_function(name: &str, maps: &SampledMaps<'_>) -> String {
     }
 }
 
-/// Returns the function `shadow_NAME`, which looks the light's visibility up.
+/// Returns the function `shadow_NAME`, which looks up the light's visibility.
 fn visibility_function(name: &str, maps: &SampledMaps<'_>) -> String {
     let sampling = maps.sampling;
     let index = index(maps);
@@ -157,7 +157,7 @@ fn visibility_function(name: &str, maps: &SampledMaps<'_>) -> String {
     .fill()
 }
 
-/// Returns the parameter by which a pool's functions select a light; empty for a light that is alone.
+/// Returns the name of the parameter by which a pool's functions select a light. It is empty for a single light.
 fn index(maps: &SampledMaps<'_>) -> &'static str {
     if maps.indexed { "index" } else { "" }
 }
@@ -167,19 +167,19 @@ fn view_count(maps: &SampledMaps<'_>) -> String {
     format!("{}u", maps.view_count)
 }
 
-/// Returns the first view of the light as a WGSL expression. For an index that no slot of the pool has, it is the number of all
-/// views. The index is limited before it is multiplied, because not every product fits 32 bits.
+/// Returns the first view of the light as a WGSL expression. For an index that no slot of the pool has, its value is
+/// the number of all views. The index is clamped before the multiplication, because not every product fits in 32 bits.
 fn first_view(maps: &SampledMaps<'_>) -> String {
     limited_view(maps, maps.view_count / maps.views_per_light)
 }
 
-/// Returns some view of the light as a WGSL expression, for what all its views have in common. For an index that no slot of the
-/// pool has, it is a view of another light.
+/// Returns a view of the light as a WGSL expression, for reading what all views of the light have in common. For an
+/// index that no slot of the pool has, its value is a view of another light.
 fn any_view(maps: &SampledMaps<'_>) -> String {
     limited_view(maps, maps.view_count / maps.views_per_light - 1)
 }
 
-/// Returns the first view of the light with the pool's index, but of no light after `last_index`.
+/// Returns the first view of the light at the pool's index, or of the one at `last_index` where the index is greater.
 fn limited_view(maps: &SampledMaps<'_>, last_index: u32) -> String {
     if maps.indexed {
         format!("min(index, {last_index}u) * {}u", maps.views_per_light)
@@ -188,7 +188,7 @@ fn limited_view(maps: &SampledMaps<'_>, last_index: u32) -> String {
     }
 }
 
-/// Returns name and type of a sampler's variable.
+/// Returns the name and the type of a sampler's variable.
 fn sampler_names(sampler: FilterSampler) -> (&'static str, &'static str) {
     match sampler {
         FilterSampler::Comparison => ("shadow_comparison_sampler", "sampler_comparison"),

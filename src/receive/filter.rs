@@ -1,9 +1,12 @@
-//! The filters: which texels of a map count for a receiver, and how much.
+//! Defines the filters: which texels of a map a lookup reads, and with which weights.
 
-/// `SHADOW_PENUMBRA_REACH` of the shader, and a texel for its bilinear taps.
+/// Is the shader's `SHADOW_PENUMBRA_REACH` and one texel more for its bilinear taps.
 const PENUMBRA_REACH_TEXELS: f64 = 33.0;
 
-/// How a receiver looks a map up.
+/// Selects how a receiver samples a map. The default is `Tent3` with a sharpness of 3.
+///
+/// The reach in this table is that of [`Filter::reach_texels`]; the counts of `Pcss` are the largest that a lookup
+/// needs.
 ///
 /// | filter | texels | texture instructions | reach (texels) |
 /// |---|---|---|---|
@@ -14,89 +17,102 @@ const PENUMBRA_REACH_TEXELS: f64 = 33.0;
 /// | `Tent3` | 16 | 4 gathers | 2 |
 /// | `Tent5` | 36 | 9 gathers | 3 |
 /// | `Tent7` | 64 | 16 gathers | 4 |
-/// | `Pcss`, `PcssRotated` | 240 | 60 gathers | 32 |
-/// | `DirectionGrid` | 64 | 64 gathers | 0.5 a sample |
-/// | `DirectionStar` | 20 | 20 gathers | 0.5 a sample |
+/// | `Pcss`, `PcssRotated` | 240 | 60 gathers | 33 |
+/// | `DirectionGrid` | 64 | 64 gathers | 0.5 per sample |
+/// | `DirectionStar` | 20 | 20 gathers | 0.5 per sample |
 ///
-/// Where shaders cannot gather (OpenGL ES 3.0, WebGL 2), a gather is four samples, one for `Nearest` and directions if the
-/// compiler sees that the others are not used.
+/// Where shaders cannot gather (OpenGL ES 3.0, WebGL 2), a gather becomes four samples. For `Nearest` and the direction
+/// filters it becomes one, if the compiler removes the three that are not used.
 ///
-/// A sharpness of 1 leaves a kernel's ramp as it is; a larger one stretches it around one half, `(v - ½) · sharpness + ½`, so
-/// that an edge is placed as well as by the wide kernel and blurred as little as by a narrow one. Below 1 a shadow never
-/// becomes fully dark; very large values bring the stairs of `Nearest` back.
+/// A sharpness of 1 leaves a kernel's ramp of visibilities `v` as it is. A larger one stretches the ramp around one
+/// half, `(v - ½) · sharpness + ½`, so that an edge is as accurately placed as by the wide kernel and as little blurred
+/// as by a narrow one. Very large values bring back the stairs of `Nearest`. Values below 1, under which no shadow
+/// would become fully dark, are refused.
+///
+/// A parameter outside its range makes the constructor of a light return
+/// [`ShadowError::OutOfRange`](crate::ShadowError::OutOfRange).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Filter {
-    /// One texel: hard stairs, for debugging and for maps that are finer than the picture.
+    /// Compares with one texel. Edges are hard stairs; this suits debugging, and maps that are finer than the image.
     Nearest,
-    /// The sampler's 2×2 comparison: the cheapest smooth edge on a GPU, in steps as coarse as 1/16 on some.
+    /// Uses the sampler's own 2×2 comparison: the cheapest smooth edge on a GPU, with weights as coarse as 1/16 on
+    /// some.
     Hardware,
-    /// The textbook's mean of 3×3 comparisons, in steps of 1/9.
+    /// Averages 3×3 nearest comparisons (percentage-closer filtering, Reeves et al. 1987, in the form of the tutorial
+    /// at learnopengl.com), in steps of 1/9.
     Box,
-    /// 2×2 gathered texels, exact bilinear weights.
+    /// Compares 2×2 gathered texels and weights the results bilinearly, in full precision.
     Bilinear {
-        /// Edge sharpness, at least 1.
+        /// Is the edge sharpness, at least 1 and finite.
         sharpness: f32,
     },
-    /// Kernel 1 2 1 ("3×3") over 4×4 gathered texels.
+    /// Applies the kernel 1 2 1 ("3×3") per axis to bilinear comparisons, over 4×4 gathered texels (Castaño 2013).
     Tent3 {
-        /// Edge sharpness, at least 1.
+        /// Is the edge sharpness, at least 1 and finite.
         sharpness: f32,
     },
-    /// Kernel 1 3 4 3 1 ("5×5") over 6×6 gathered texels.
+    /// Applies the kernel 1 3 4 3 1 ("5×5") per axis to bilinear comparisons, over 6×6 gathered texels (Castaño 2013).
     Tent5 {
-        /// Edge sharpness, at least 1.
+        /// Is the edge sharpness, at least 1 and finite.
         sharpness: f32,
     },
-    /// Kernel 1 5 12 16 12 5 1 ("7×7") over 8×8 gathered texels.
+    /// Applies the kernel 1 5 12 16 12 5 1 ("7×7") per axis to bilinear comparisons, over 8×8 gathered texels (Castaño
+    /// 2013).
     Tent7 {
-        /// Edge sharpness, at least 1.
+        /// Is the edge sharpness, at least 1 and finite.
         sharpness: f32,
     },
-    /// Soft shadows of a light with size (percentage-closer soft shadows, Fernando 2005), calibrated by the light's own size:
-    /// sharp where caster and receiver touch, and as wide as the real penumbra away from it, up to 32 texels.
+    /// Renders soft shadows of a light with a size (percentage-closer soft shadows, Fernando 2005), calibrated by the
+    /// size of the light: an edge is sharp where caster and receiver touch, and elsewhere as wide as the real penumbra,
+    /// up to a radius of 32 texels.
     ///
-    /// Where a penumbra would be wider than that, it stays at 32 texels: a smaller map then shows more of it.
+    /// A penumbra that would be wider stays at 32 texels; a smaller map then shows more of it.
     Pcss {
-        /// For directional lights the angular diameter in radians (the sun's is 0.0093), below π; for local lights the radius
-        /// in world units. Above 0 and finite; too large a value blurs shadows away from their casters, too small a one makes
-        /// them hard.
+        /// Is the size of the light, above 0 and finite. For directional lights it is the angular diameter in radians
+        /// (the sun's is 0.0093), below π; for local lights it is the radius in world units. Too large a value blurs
+        /// shadows away from their casters; too small a one makes their edges hard.
         light_size: f32,
     },
-    /// `Pcss` with its taps turned by an angle of each half texel's own: grain in place of bands, for lights so large that
-    /// penumbrae span some ten texels and more. The grain is fixed in the world and does not swim when the camera moves.
+    /// Renders as `Pcss` does, with the sample pattern rotated by an angle that differs for each half texel. Noise then
+    /// replaces banding, for lights so large that penumbrae span some ten texels and more. The noise is fixed in the
+    /// world and does not swim when the camera moves.
     PcssRotated {
-        /// As for `Pcss`.
+        /// Is the size of the light, as for `Pcss`.
         light_size: f32,
     },
-    /// Point lights only: the textbook's 4×4×4 nearest comparisons in a cube of directions around the receiver's own.
+    /// Averages 4×4×4 nearest comparisons in a cube of directions around the receiver's own, as the tutorial at
+    /// learnopengl.com does; for point lights only.
     ///
-    /// A blur of constant width in the world, in steps of 1/64: for a soft look, at sixteen times the lookups of `Tent3`
-    /// and more error against hard truth.
+    /// It blurs by a constant width in the world, in steps of 1/64, for a soft look. It takes sixteen times the gathers
+    /// of `Tent3` and has a larger error against ray-traced hard shadows.
     DirectionGrid {
-        /// Half the side of the cube in world units, above 0; the textbook has 0.1.
+        /// Is half the side of the cube in world units, above 0 and finite; the tutorial uses 0.1. Too large a value
+        /// blurs shadows at contacts as well.
         radius: f32,
     },
-    /// Point lights only: the textbook's nearest comparisons in 20 fixed directions, over a radius that grows with the distance
-    /// from the viewer (by the share of the light's reach), where the frame tells of a camera.
+    /// Averages nearest comparisons in 20 fixed directions, as the tutorial at learnopengl.com does; for point lights
+    /// only. The radius is scaled by one plus the distance from the camera divided by the light's reach, where the
+    /// frame has a camera.
     ///
-    /// A third of the cost of `DirectionGrid`; its steps of 1/20 show as bands where the radius spans many texels.
+    /// It takes a third of the gathers of `DirectionGrid`. Its steps of 1/20 show as bands where the radius spans many
+    /// texels.
     DirectionStar {
-        /// Radius in world units next to the viewer, above 0; the textbook has 0.04.
+        /// Is the radius in world units next to the camera, above 0 and finite; the tutorial uses 0.04.
         radius: f32,
     },
 }
 
 impl Default for Filter {
-    /// `Tent3` sharpened three times: of the filters here the least error against ray-traced hard shadows for its cost
-    /// (`cargo bench --bench speed_vs_error`).
+    /// Returns `Tent3` with a sharpness of 3: at its cost, no filter here has a smaller error against ray-traced hard
+    /// shadows (`cargo bench --bench speed_vs_error`).
     fn default() -> Self {
         Self::Tent3 { sharpness: 3.0 }
     }
 }
 
 impl Filter {
-    /// Every filter that suits all kinds of light, the sharpened ones with a sharpness of 1.
+    /// Lists the filters of hard shadows that all kinds of light accept, those with a sharpness at a sharpness of 1.
     pub const PLANAR: &'static [Self] = &[
         Self::Nearest,
         Self::Hardware,
@@ -107,7 +123,8 @@ impl Filter {
         Self::Tent7 { sharpness: 1.0 },
     ];
 
-    /// Greatest distance per axis, in texels, from the place looked up to the centre of a texel that counts.
+    /// Returns the greatest distance per axis, in texels, from the sampled position to the centre of a texel that the
+    /// lookup reads with a weight above 0.
     pub const fn reach_texels(self) -> f64 {
         match self {
             Self::Nearest | Self::DirectionGrid { .. } | Self::DirectionStar { .. } => 0.5,
@@ -120,14 +137,15 @@ impl Filter {
         }
     }
 
-    /// Edge sharpness; 1 for the filters that have none.
+    /// Returns the edge sharpness: 1 for the filters that have none, and 3 for [`Filter::Pcss`] and
+    /// [`Filter::PcssRotated`], whose penumbrae below one texel use `Tent3`.
     pub const fn sharpness(self) -> f32 {
         match self {
             Self::Bilinear { sharpness }
             | Self::Tent3 { sharpness }
             | Self::Tent5 { sharpness }
             | Self::Tent7 { sharpness } => sharpness,
-            // The tent that stands in where a penumbra is narrower than a texel.
+            // This is the sharpness of the tent kernel that replaces penumbrae narrower than a texel.
             Self::Pcss { .. } | Self::PcssRotated { .. } => 3.0,
             Self::Nearest
             | Self::Hardware
@@ -137,7 +155,8 @@ impl Filter {
         }
     }
 
-    /// Size of the light for [`Filter::Pcss`] and [`Filter::PcssRotated`]; 0 for the others.
+    /// Returns the size of the light for [`Filter::Pcss`] and [`Filter::PcssRotated`]: radians of angular diameter for
+    /// directional lights, world units of radius for local ones. It is 0 for the other filters.
     pub const fn light_size(self) -> f32 {
         match self {
             Self::Pcss { light_size } | Self::PcssRotated { light_size } => light_size,
@@ -145,7 +164,8 @@ impl Filter {
         }
     }
 
-    /// Radius in world units of the direction-space filters; 0 for the others.
+    /// Returns the radius in world units of [`Filter::DirectionGrid`] and [`Filter::DirectionStar`]; 0 for the other
+    /// filters.
     pub const fn radius_world(self) -> f32 {
         match self {
             Self::DirectionGrid { radius } | Self::DirectionStar { radius } => radius,
@@ -153,8 +173,8 @@ impl Filter {
         }
     }
 
-    /// Returns the pattern of a direction-space filter: what follows `shadow_direction_` in the name of the WGSL function that
-    /// returns its offsets, and their number.
+    /// Returns the pattern of a direction-space filter (what follows `shadow_direction_` in the name of the WGSL
+    /// function that returns its offsets) and the number of offsets. It is `None` for all other filters.
     pub(crate) const fn directions(self) -> Option<(&'static str, u32)> {
         match self {
             Self::DirectionGrid { .. } => Some(("grid", 64)),
@@ -163,12 +183,14 @@ impl Filter {
         }
     }
 
-    /// True where each texel is compared with a reference of its own, so that the receiver's plane can be followed.
+    /// Returns whether each texel is compared with a reference depth of its own, so that
+    /// [`Bias::Auto`](crate::Bias::Auto) can use the receiver's tangent plane.
     pub const fn compares_each_texel(self) -> bool {
         !matches!(self, Self::Hardware)
     }
 
-    /// Texture instructions of one lookup.
+    /// Returns the number of texture instructions of one lookup (at most so many for [`Filter::Pcss`] and
+    /// [`Filter::PcssRotated`]), on a device whose shaders can gather.
     pub const fn texture_instructions(self) -> u32 {
         match self {
             Self::Nearest | Self::Hardware | Self::Bilinear { .. } => 1,
@@ -181,7 +203,7 @@ impl Filter {
         }
     }
 
-    /// Name of the WGSL module, and the sampler that its function takes.
+    /// Returns the name of the WGSL module and the sampler that its function takes.
     pub(crate) const fn wgsl(self) -> (&'static str, FilterSampler) {
         match self {
             Self::Nearest | Self::DirectionGrid { .. } | Self::DirectionStar { .. } => {
@@ -199,11 +221,11 @@ impl Filter {
     }
 }
 
-/// The sampler that a filter's function takes.
+/// Selects the sampler that a filter's function takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FilterSampler {
-    /// Linear, comparing.
+    /// Compares, with linear filtering.
     Comparison,
-    /// Nearest: a gather fetches four texels with it whatever it filters.
+    /// Does not compare, and filters to the nearest texel. A gather fetches four texels whatever the filtering.
     Point,
 }

@@ -1,11 +1,12 @@
-//! What the maps of a light need of a device's limits.
+//! Checks that a device's limits suffice for the maps of a light.
 
 use crate::ShadowError;
 use crate::cast::{VIEW_UNIFORM_BYTES, caster_group};
 use crate::gpu::{Need, allocated_layers};
 use crate::receive::view_uniform_bytes;
 
-/// Can `device` hold a light of `layers` layers, one view each? `field` is what set their number.
+/// Accepts devices whose limits suffice for a light with `layers` layers of one view each. `field` is the path of the
+/// field that sets their number.
 pub(crate) fn check_layers(
     device: &wgpu::Device,
     field: &'static str,

@@ -1,4 +1,4 @@
-//! What every light owns: a depth map, the recorder that fills it, the uniforms of its views, and a report.
+//! Defines what every light owns: a depth map, the recorder that fills it, the uniforms of its views, and a report.
 
 use glam::Vec3;
 
@@ -14,11 +14,13 @@ use crate::receive::{
 };
 use crate::{ShadowError, ShadowView, report::SliceReport};
 
-/// What every light owns and what is looked up: a depth texture, a uniform buffer, and how they are to be read.
+/// Holds what shaders sample of a light: its depth texture and its uniform buffer, with the settings that determine how
+/// they are sampled.
 ///
-/// A light hands it out by its `maps` method. It goes into a [`ShadowBindings`](crate::ShadowBindings) and a
-/// [`DebugView`](crate::debug::DebugView) as it is; the parts are there for engines with their own bind groups. Texture and buffer stay
-/// the same for the light's whole life, so a bind group outlives every frame.
+/// A light's `maps` method returns it. It is passed unchanged to [`ShadowBindings`](crate::ShadowBindings) and
+/// [`DebugView`](crate::debug::DebugView); the methods that return its parts are meant for engines with their own bind
+/// groups. Texture and buffer stay the same for the whole lifetime of the light, so a bind group remains valid in all
+/// frames.
 #[derive(Debug)]
 pub struct ShadowMaps {
     device: wgpu::Device,
@@ -35,7 +37,7 @@ pub struct ShadowMaps {
     memory: Memory,
 }
 
-/// Lists that go from frame to frame for their memory alone.
+/// Holds lists that are reused from frame to frame for their memory alone.
 #[derive(Debug, Default)]
 struct Memory {
     casters: Vec<Vec<u32>>,
@@ -43,40 +45,41 @@ struct Memory {
     uniforms: Vec<ShadowViewUniform>,
 }
 
-/// What a light's maps are made of.
+/// Describes what a light's maps are made of.
 pub(crate) struct ShadowMapsDescriptor<'a> {
     pub label: &'a str,
-    /// Path of the size in the caller's descriptor.
+    /// Is the path of the size in the caller's descriptor, for errors.
     pub size_field: &'static str,
     pub map_size: u32,
-    /// The number of lights: one, or the capacity of a pool.
+    /// Is the number of lights: one, or the capacity of a pool.
     pub lights: u32,
     pub views_per_light: u32,
-    /// What decides how many layers the maps have, for the error of a device that cannot hold them.
+    /// Names what determines the number of layers, for the error of a device that cannot hold so many.
     pub layers_field: &'static str,
     pub sampling: Sampling,
     pub selection: Selection,
-    /// Lights are asked by index.
+    /// States that the maps are those of a pool, whose WGSL function takes the index of a light.
     pub indexed: bool,
 }
 
-/// A layer that a light of this frame has, and what its uniform says where nothing casts into it.
+/// Describes a layer of a light of this frame, with the values that its uniform has where nothing casts into it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LayerState {
     pub layer: u32,
-    /// The place of a local light.
+    /// Is the position of a local light; zero for a directional one.
     pub anchor_render: Vec3,
-    /// World distance beyond which the light does not reach; infinite for a directional one.
+    /// Is the world distance beyond which the light does not reach; infinite for a directional one.
     pub reach_world: f64,
     /// Is where the light's shadows end, as the uniform has it.
     pub limit: [f32; 4],
-    /// It needed drawing and was put off.
+    /// States that the layer needed drawing and was deferred.
     pub deferred: bool,
-    /// Of a cascade of a camera's view.
+    /// Describes the slice of a camera's view that the layer covers as a cascade.
     pub slice: Option<SliceReport>,
 }
 
 impl LayerState {
+    /// Returns the state of a layer of a directional light.
     pub fn directional(layer: u32, limit: [f32; 4], slice: Option<SliceReport>) -> Self {
         Self {
             layer,
@@ -89,23 +92,24 @@ impl LayerState {
     }
 }
 
-/// What a frame brings to the maps.
+/// Holds the input of a frame for the maps.
 pub(crate) struct MapsFrame<'a> {
-    /// The layers of this frame's lights; all others are lit and not reported.
+    /// Holds the layers of this frame's lights; all other layers are lit and not reported.
     pub layers: &'a [LayerState],
-    /// The views that something casts into, in the order of `layers`; the other layers are lit.
+    /// Holds the views into which something casts, in the order of `layers`; the other layers are lit.
     pub views: Vec<ViewDraws>,
-    /// The camera, if there is one.
-    pub viewer_render: Option<Vec3>,
+    /// Is the position of the first camera, if there is one.
+    pub camera_render: Option<Vec3>,
     pub casters: FrameCasters<'a>,
 }
 
 impl ShadowMaps {
+    /// Creates the maps, which are lit everywhere until the first frame is recorded.
     pub(crate) fn new(
         device: &wgpu::Device,
         descriptor: &ShadowMapsDescriptor<'_>,
     ) -> Result<Self, ShadowError> {
-        // Any product fits 64 bits; one that a device can hold fits 32 bits as well.
+        // Every product fits in 64 bits. A number of layers that a device can hold also fits in 32 bits.
         let layers = u64::from(descriptor.lights) * u64::from(descriptor.views_per_light);
         check_layers(device, descriptor.layers_field, layers)?;
         let (label, layers) = (descriptor.label, layers as u32);
@@ -150,15 +154,17 @@ impl ShadowMaps {
         &self.sampling
     }
 
-    /// Returns the depth texture, reversed: near 1, far 0; `Depth32Float`, or as a directional light's
-    /// [`DepthFormat`](crate::DepthFormat) says. It has one layer per cascade, spot or cube face (+x, -x, +y, -y, +z, -z); a
-    /// pool has those of its slots in order. It is a copy source on all backends but OpenGL.
+    /// Returns the depth texture. Its depths are reversed: near 1, far 0. Its format is `Depth32Float`, or that of a
+    /// directional light's [`DepthFormat`](crate::DepthFormat). It has one layer per cascade, spot light or cube face
+    /// (+x, -x, +y, -y, +z, -z); a pool has the layers of its slots in order. It can be copied from on all backends but
+    /// OpenGL.
     pub fn texture(&self) -> &wgpu::Texture {
         self.map.texture()
     }
 
-    /// Returns all layers as a `texture_depth_2d_array`. Where shaders cannot gather (OpenGL ES 3.0, WebGL 2), bind it as
-    /// `texture_2d_array<f32>` for all filters but [`Filter::Hardware`](crate::Filter::Hardware).
+    /// Returns a view of all layers, to be bound as a `texture_depth_2d_array`. Where shaders cannot gather (OpenGL ES
+    /// 3.0, WebGL 2), bind it as a `texture_2d_array<f32>` for all filters but
+    /// [`Filter::Hardware`](crate::Filter::Hardware).
     pub fn texture_view(&self) -> &wgpu::TextureView {
         self.map.array_view()
     }
@@ -177,8 +183,8 @@ impl ShadowMaps {
         &self.uniform_values
     }
 
-    /// Returns the views of the last frame, in the order of the frame's lights and of the layers of each; those that nothing casts
-    /// into are left out. [`ShadowView::layer`] tells which layer each is in.
+    /// Returns the views of the last frame, in the order of the frame's lights and of the layers of each. Views into
+    /// which nothing casts are omitted. [`ShadowView::layer`] tells which layer each view is rendered into.
     pub fn views(&self) -> impl ExactSizeIterator<Item = &ShadowView> {
         self.views.iter().map(|draws| &draws.view)
     }
@@ -207,29 +213,31 @@ impl ShadowMaps {
         &self.device
     }
 
+    /// Resets the state of all layers and of the uniform buffer, so that the next frame draws and uploads everything.
     pub(crate) fn invalidate(&mut self) {
         self.recorder.invalidate();
         self.uniforms.invalidate();
     }
 
-    /// An empty list of caster indices, with the memory of an earlier frame's.
+    /// Returns an empty list of caster indices, which reuses the memory of an earlier frame.
     pub(crate) fn spare_list(&mut self) -> Vec<u32> {
         let mut list = self.memory.casters.pop().unwrap_or_default();
         list.clear();
         list
     }
 
-    /// Takes a list back that no view needed.
+    /// Takes back a list that no view needed.
     pub(crate) fn return_list(&mut self, list: Vec<u32>) {
         self.memory.casters.push(list);
     }
 
-    /// An empty list of views, with the memory of an earlier frame's.
+    /// Returns an empty list of views, which reuses the memory of an earlier frame.
     pub(crate) fn spare_views(&mut self) -> Vec<ViewDraws> {
         std::mem::take(&mut self.memory.views)
     }
 
-    /// Uploads and records a frame. On an error nothing has been recorded and nothing has changed.
+    /// Uploads the uniforms of a frame and records its depth passes. If it returns an error, nothing has been recorded
+    /// and nothing has changed.
     pub(crate) fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -238,20 +246,20 @@ impl ShadowMaps {
         let MapsFrame {
             layers,
             mut views,
-            viewer_render,
+            camera_render,
             casters,
         } = frame;
         let device = &self.device.clone();
         let prepared = self
             .recorder
             .prepare(device, &self.map, &mut views, &casters)?;
-        let uniform_values = self.uniforms_of(layers, &views, viewer_render);
+        let uniform_values = self.uniforms_of(layers, &views, camera_render);
         let upload = self
             .uniforms
             .prepare(device, bytemuck::cast_slice(&uniform_values))?;
         let draws = views.iter().any(|draws| draws.plan != Plan::Keep);
         if draws && upload.is_none() && !prepared.uploads() {
-            // Nothing was made on the device, which so had no occasion to say that it is lost.
+            // Nothing was created on the device so far, so that a lost device has not been noticed yet.
             capture_device_errors(device, || ()).map_err(|refusal| {
                 ShadowError::Device(DeviceError {
                     object: "a depth pass",
@@ -273,12 +281,12 @@ impl ShadowMaps {
         Ok(&self.report)
     }
 
-    /// One uniform per layer of the texture.
+    /// Returns the uniforms of the frame, one per layer of the texture.
     fn uniforms_of(
         &mut self,
         layers: &[LayerState],
         views: &[ViewDraws],
-        viewer_render: Option<Vec3>,
+        camera_render: Option<Vec3>,
     ) -> Vec<ShadowViewUniform> {
         let mut uniforms = std::mem::take(&mut self.memory.uniforms);
         uniforms.clear();
@@ -298,7 +306,7 @@ impl ShadowMaps {
         }
         for uniform in &mut uniforms {
             uniform.sample_radius = self.sampling.filter.radius_world();
-            uniform.viewer = viewer_render.map_or([0.0; 4], |viewer| viewer.extend(1.0).to_array());
+            uniform.camera = camera_render.map_or([0.0; 4], |camera| camera.extend(1.0).to_array());
         }
         uniforms
     }
@@ -331,7 +339,7 @@ impl ShadowMaps {
         self.recorder.passes(draws, casters)
     }
 
-    /// Does the layer of `view` hold what was last drawn for it?
+    /// Returns whether the layer of `view` still contains what was last drawn for that view.
     pub(crate) fn holds(&self, view: &ShadowView) -> bool {
         self.recorder.holds(view)
     }

@@ -1,12 +1,12 @@
-//! Top floor: what a receiver asks a map, and how the engine's shader reaches it.
+//! Defines how a receiver samples a map, and how the engine's shader accesses it.
 //!
 //! ```text
-//! filter.rs        which texels count, and how much
+//! filter.rs        which texels a lookup reads, and their weights
 //! bias.rs          how a receiver is kept from shadowing itself
-//! check_sampling.rs  what filter and bias must be
+//! check_sampling.rs  the checks of filter and bias
 //! uniforms.rs      the layout that Rust and WGSL share
-//! reference.rs     the WGSL's arithmetic once more in f64
-//! texel_access.rs  gathers, or samples where a device has none
+//! reference.rs     the CPU reference: the arithmetic of the WGSL in f64
+//! texel_access.rs  gathers, or samples where a device has no gather
 //! maps.rs          ShadowMaps: what every light owns; sampled_maps.rs: what a lookup needs of it
 //! layer_limits.rs  what the maps of a light need of a device's limits
 //! report.rs        ShadowReport: what a light did in a frame

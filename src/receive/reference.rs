@@ -1,52 +1,59 @@
-//! The WGSL's arithmetic once more, in f64: what a lookup should return, given the texels that a map holds.
+//! Contains the CPU reference of the WGSL: the arithmetic of a lookup in f64, which returns what the shader should
+//! return for the texels that a map contains.
 //!
-//! For an engine's own tests, and for the library's: the device's result is compared with this. Kernels are written here as
-//! what they are, a bilinear comparison convolved with a row of integers, not as the shader's closed form.
+//! It serves the tests of engines and of the library, which compare the device's results with it. Kernels are computed
+//! here by their definition, a bilinear comparison convolved with a row of integers, and not by the shader's closed
+//! form.
+//!
+//! No input makes these functions panic.
 
 use glam::{DMat4, DVec2, DVec3, DVec4, I64Vec2, Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use crate::receive::bias::BiasScheme;
 use crate::receive::{Bias, Filter, ShadowViewUniform};
 
-/// One layer of a depth map as read back from the device: rows from the top, ndc depth.
+/// Holds one layer of a depth map as read back from the device: rows from the top, in ndc depth (reversed: near 1, far
+/// 0).
 #[derive(Clone, Copy, Debug)]
 pub struct DepthLayer<'a> {
-    /// Texels per side; any size, whatever `depths` holds.
+    /// Is the number of texels per side. Any size is accepted, whatever the length of `depths`.
     pub size: u32,
-    /// `size * size` depths; those that are missing count as nothing (0).
+    /// Holds `size * size` depths. Missing depths count as 0, at which nothing casts.
     pub depths: &'a [f32],
 }
 
 impl DepthLayer<'_> {
-    /// Depth of a texel; beyond the sides, that of the nearest one inside, as the samplers clamp.
+    /// Returns the depth of a texel. Beyond the sides it is that of the nearest texel inside, as the samplers clamp.
     fn depth(&self, x: i64, y: i64) -> f64 {
         let last = (i64::from(self.size) - 1).max(0);
         let [row, column] = [y, x].map(|texel| texel.clamp(0, last).unsigned_abs());
-        // Below the square of the size, which fits into 64 bits without a sign.
+        // The index is below the square of the size, which fits into an unsigned integer of 64 bits.
         let index = row * u64::from(self.size) + column;
         let index = usize::try_from(index).unwrap_or(usize::MAX);
         f64::from(self.depths.get(index).copied().unwrap_or(0.0))
     }
 }
 
-/// Where a receiver stands in a map, as `ShadowReceiver` in `wgsl/view.wgsl`.
+/// Holds the position of a receiver in a map, as `ShadowReceiver` in `wgsl/view.wgsl` does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Receiver {
-    /// Texel coordinates, origin top left, centres at halves.
+    /// Is the position in texel coordinates: origin at the top left, centres at halves.
     pub texel: DVec2,
-    /// Reference depth there, bias included.
+    /// Is the reference depth at `texel` in ndc, with the bias included.
     pub depth: f64,
-    /// Change of the reference depth per texel.
+    /// Is the change of the reference depth per texel along x and y.
     pub gradient: DVec2,
-    /// Radius of a penumbra in texels per difference of depth.
+    /// Is the radius of a penumbra in texels per difference of ndc depth.
     pub penumbra: DVec2,
-    /// Where the map's first texel lies in a grid that is fixed in the world, as `grid` of the WGSL struct `ShadowViewUniform`.
+    /// Is the position of the map's first texel in a grid that is fixed in the world, as the member `grid` of the WGSL
+    /// struct `ShadowViewUniform` has it.
     pub grid: u32,
-    /// [`holds`] of the place; where it is false, visibility is 1.
+    /// Is the result of [`holds`] for the receiver's position. Where it is false, visibility is 1.
     pub inside: bool,
 }
 
-/// The receiver at `position` (render space) with geometric normal `normal`.
+/// Returns the receiver at `position` (render space) with the geometric normal `normal` (unit length, on the shaded
+/// side), as the shader computes it for a light with this filter and bias.
 pub fn receiver(
     view: &ShadowViewUniform,
     filter: Filter,
@@ -109,8 +116,8 @@ pub fn receiver(
     }
 }
 
-/// What `filter` returns for `receiver`, in [0, 1]; for a direction-space filter, what one of its samples returns. A receiver
-/// that is not inside, or whose texel lies off the map, is lit.
+/// Returns the visibility of the light in [0, 1] that `filter` computes for `receiver`; for a direction-space filter,
+/// that of one of its samples. The result is 1 for a receiver that is not inside, or whose texel lies off the map.
 pub fn visibility(filter: Filter, map: &DepthLayer<'_>, receiver: &Receiver) -> f64 {
     let size = f64::from(map.size);
     if !receiver.inside || !is_on_map(receiver.texel, size) {
@@ -142,20 +149,22 @@ pub fn visibility(filter: Filter, map: &DepthLayer<'_>, receiver: &Receiver) -> 
     }
 }
 
-/// The receiver's own depth at a texel: its plane, never farther from the light than the receiver.
+/// Returns the reference depth at a texel: that of the receiver's tangent plane, never farther from the light than the
+/// receiver.
 fn reference_depth(receiver: &Receiver, texel: I64Vec2) -> f64 {
     let center = texel.as_dvec2() + 0.5;
     receiver.depth + receiver.gradient.dot(center - receiver.texel).max(0.0)
 }
 
+/// Returns 1 if the receiver is lit as far as one texel tells, and 0 if it is shadowed.
 fn lit(map: &DepthLayer<'_>, receiver: &Receiver, texel: I64Vec2) -> f64 {
     let reference = reference_depth(receiver, texel);
     f64::from(u8::from(reference >= map.depth(texel.x, texel.y)))
 }
 
-/// A bilinear comparison at `place`, convolved with `row` along both axes.
-fn bilinear(map: &DepthLayer<'_>, receiver: &Receiver, place: DVec2, row: &[f64]) -> f64 {
-    let from_centers = place - 0.5;
+/// Returns a bilinear comparison at `sample_texel`, convolved with `row` along both axes.
+fn bilinear(map: &DepthLayer<'_>, receiver: &Receiver, sample_texel: DVec2, row: &[f64]) -> f64 {
+    let from_centers = sample_texel - 0.5;
     let base = from_centers.floor();
     let fraction = from_centers - base;
     let first = base.as_i64vec2() - (row.len() / 2) as i64;
@@ -171,20 +180,22 @@ fn bilinear(map: &DepthLayer<'_>, receiver: &Receiver, place: DVec2, row: &[f64]
     sum
 }
 
+/// Returns a visibility whose ramp is stretched around one half.
 fn sharpened(visibility: f64, sharpness: f64) -> f64 {
     let ramp = (visibility - 0.5) * sharpness + 0.5;
-    // A sharpness that is no number, which every light refuses, sharpens nothing.
+    // A sharpness of NaN, which every light refuses, changes nothing.
     if ramp.is_nan() { visibility } else { ramp }.clamp(0.0, 1.0)
 }
 
-/// `wgsl/filter_pcss.wgsl`.
+/// Returns the visibility that `wgsl/filter_pcss.wgsl` computes, with sample patterns rotated by `turn` (cosine and
+/// sine).
 fn penumbra(map: &DepthLayer<'_>, receiver: &Receiver, turn: DVec2) -> f64 {
     const REACH: f64 = 32.0;
     let widest =
         (receiver.penumbra * (1.0 - receiver.depth)).clamp(DVec2::ONE, DVec2::splat(REACH));
     let (mut height_sum, mut count) = (0.0, 0.0);
     for index in 0..24 {
-        // closer together toward the middle, weighted by the area that each sample stands for
+        // Samples lie closer together toward the middle; each is weighted by the area that it stands for.
         let t = (f64::from(index) + 0.5) / 24.0;
         let offset = turn.rotate(DVec2::from_angle(f64::from(index) * GOLDEN_ANGLE)) * t.powf(1.5);
         let first = (receiver.texel + offset * widest - 0.5)
@@ -211,8 +222,8 @@ fn penumbra(map: &DepthLayer<'_>, receiver: &Receiver, turn: DVec2) -> f64 {
     );
     let soft = disk(32)
         .map(|offset| {
-            let place = receiver.texel + turn.rotate(offset) * radius;
-            bilinear(map, receiver, place, &[1.0])
+            let sample_texel = receiver.texel + turn.rotate(offset) * radius;
+            bilinear(map, receiver, sample_texel, &[1.0])
         })
         .sum::<f64>()
         / 32.0;
@@ -220,7 +231,8 @@ fn penumbra(map: &DepthLayer<'_>, receiver: &Receiver, turn: DVec2) -> f64 {
     hard + (soft - hard) * share
 }
 
-/// Cosine and sine by which the half texel of a receiver turns its patterns, as `wgsl/filter_pcss_rotated.wgsl`.
+/// Returns cosine and sine of the angle by which the half texel of a receiver rotates the sample patterns, as in
+/// `wgsl/filter_pcss_rotated.wgsl`.
 fn turn(receiver: &Receiver) -> DVec2 {
     let half_texel = (receiver.texel.max(DVec2::ZERO) * 2.0).as_uvec2();
     let first = UVec2::new(receiver.grid & 0xffff, receiver.grid >> 16);
@@ -232,9 +244,10 @@ fn turn(receiver: &Receiver) -> DVec2 {
     DVec2::from_angle(f64::from(bits >> 8) * std::f64::consts::TAU / 16_777_216.0)
 }
 
+/// Is the golden angle in radians, with the digits that the shader uses.
 const GOLDEN_ANGLE: f64 = std::f64::consts::TAU * 0.38196601;
 
-/// Vogel's spiral of `count` places over the unit disk.
+/// Returns `count` points spread evenly over the unit disk along a golden-angle spiral (Vogel 1979).
 fn disk(count: u32) -> impl Iterator<Item = DVec2> {
     (0..count).map(move |index| {
         let radius = ((f64::from(index) + 0.5) / f64::from(count)).sqrt();
@@ -242,21 +255,22 @@ fn disk(count: u32) -> impl Iterator<Item = DVec2> {
     })
 }
 
+/// Describes a filter by its definition.
 enum Kernel {
-    /// A mean of nearest texels within a radius.
+    /// Averages nearest comparisons within this many texels along each axis.
     Boxed(i64),
-    /// A bilinear lookup convolved with a row of integers per axis.
+    /// Convolves a bilinear comparison with a row of integers along each axis.
     Bilinear(&'static [f64]),
 }
 
 fn kernel(filter: Filter) -> Kernel {
     match filter {
-        // One sample of a direction-space filter is a nearest lookup.
+        // One sample of a direction-space filter is a nearest comparison.
         Filter::Nearest | Filter::DirectionGrid { .. } | Filter::DirectionStar { .. } => {
             Kernel::Boxed(0)
         }
         Filter::Box => Kernel::Boxed(1),
-        // A penumbra is made of bilinear lookups.
+        // A penumbra consists of bilinear comparisons.
         Filter::Hardware
         | Filter::Bilinear { .. }
         | Filter::Pcss { .. }
@@ -267,7 +281,8 @@ fn kernel(filter: Filter) -> Kernel {
     }
 }
 
-/// Weights of the texels from the first that counts, for a place `fraction` of a texel past a centre.
+/// Returns the weights of the texels along an axis, from the first that contributes, for a position that is `fraction`
+/// of a texel past a centre.
 fn bilinear_weights(row: &[f64], fraction: f64) -> Vec<f64> {
     let sum: f64 = row.iter().sum();
     (0..=row.len())
@@ -291,7 +306,7 @@ fn clip_w(view: &ShadowViewUniform, relative: DVec3) -> f64 {
     w_row(view).dot(relative.extend(1.0))
 }
 
-/// World distance of the light from a place's tangent plane; endless for a directional light.
+/// Returns the world distance of the light from the tangent plane at a position; infinite for a directional light.
 fn light_height(view: &ShadowViewUniform, relative: DVec3, normal: DVec3) -> f64 {
     if view.light[3] > 0.0 {
         normal.dot(relative).abs()
@@ -300,6 +315,7 @@ fn light_height(view: &ShadowViewUniform, relative: DVec3, normal: DVec3) -> f64
     }
 }
 
+/// Returns the receiver's tangent plane in texel space: its components along texel x, texel y and depth.
 fn plane_across_map(view: &ShadowViewUniform, relative: DVec3, normal: DVec3) -> DVec3 {
     let plane = normal.extend(-normal.dot(relative));
     let row = |row: [f32; 4]| Vec4::from_array(row).as_dvec4().dot(plane);
@@ -310,33 +326,36 @@ fn plane_across_map(view: &ShadowViewUniform, relative: DVec3, normal: DVec3) ->
     )
 }
 
-/// Does the map say anything of a place in render space? Where it does not, the place is lit.
+/// Returns whether the map of `view` covers `position` (render space), as `shadow_view_holds` in `wgsl/view.wgsl` does:
+/// within its sides, not beyond its far plane, and for a local light in front of it and within its cone and range. A
+/// position that no view covers is lit.
 pub fn holds(view: &ShadowViewUniform, position: DVec3) -> bool {
     let relative = position - Vec3::from_array(view.anchor).as_dvec3();
-    let place = matrix(view) * relative.extend(1.0);
-    let texel = place.truncate().truncate() / place.w;
+    let homogeneous = matrix(view) * relative.extend(1.0);
+    let texel = homogeneous.truncate().truncate() / homogeneous.w;
     let inner = Vec4::from_array(view.inner).as_dvec4();
     let within = texel.cmpge(DVec2::new(inner.x, inner.y)).all()
         && texel.cmple(DVec2::new(inner.z, inner.w)).all();
     let light = Vec4::from_array(view.light).as_dvec4();
     let reached = relative.length() <= f64::from(view.range)
         && -relative.dot(light.truncate()) >= f64::from(view.cone_cosine) * relative.length();
-    within && reached && place.w > 0.0 && place.z >= 0.0
+    within && reached && homogeneous.w > 0.0 && homogeneous.z >= 0.0
 }
 
-/// So that a place that a cascade holds never weighs nothing.
+/// Is the least weight of a cascade. It is above 0, so that every position within a cascade has a weighted mean.
 const LEAST_WEIGHT: f64 = 1.0 / 4096.0;
 
-/// Weight of a cascade at a place that it holds, as `shadow_view_weight` in `wgsl/view.wgsl`.
+/// Returns the weight, from 1/4096 to 1, of a cascade at a `position` (render space) that it covers, where cascades
+/// blend. It is the `shadow_view_weight` of `wgsl/view.wgsl`.
 pub fn weight(view: &ShadowViewUniform, position: DVec3) -> f64 {
     let relative = position - Vec3::from_array(view.anchor).as_dvec3();
-    let place = matrix(view) * relative.extend(1.0);
-    let texel = place.truncate().truncate() / place.w;
+    let homogeneous = matrix(view) * relative.extend(1.0);
+    let texel = homogeneous.truncate().truncate() / homogeneous.w;
     let inner = Vec4::from_array(view.inner).as_dvec4();
     let from_border =
         (texel - inner.truncate().truncate()).min(DVec2::new(inner.z, inner.w) - texel);
     let share = from_border.min_element() / f64::from(view.fade_texels);
-    // A share that is no number is the least.
+    // A share of NaN gives the least weight.
     if share >= LEAST_WEIGHT {
         share.min(1.0)
     } else {
@@ -355,13 +374,13 @@ fn receiver_at(
     gradient: DVec2,
     offset: f64,
 ) -> Receiver {
-    let place = matrix(view) * moved.extend(1.0);
-    let texel = place.truncate().truncate() / place.w;
+    let homogeneous = matrix(view) * moved.extend(1.0);
+    let texel = homogeneous.truncate().truncate() / homogeneous.w;
     let on_map = is_on_map(texel, f64::from(view.map_size));
-    let depth = place.z / place.w;
+    let depth = homogeneous.z / homogeneous.w;
     Receiver {
         texel,
-        depth: if place.w > 0.0 && on_map {
+        depth: if homogeneous.w > 0.0 && on_map {
             depth + offset + depth * f64::from(view.depth_error_relative)
         } else {
             2.0

@@ -1,54 +1,59 @@
-//! What a frame's shadows cost and how fine they are.
+//! Reports the cost of a frame's shadows and the resolution of their maps.
 
 use glam::Vec2;
 
 use crate::report::{BrokenBounds, SliceReport};
 
-/// What became of a view in a frame.
+/// Tells how a view was brought up to date in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ViewStatus {
-    /// Its casters were drawn.
+    /// The casters of the view were drawn.
     Drawn,
-    /// Nothing in it had changed; its map was kept.
+    /// Nothing in the view had changed, and its map was kept.
     Kept,
-    /// It needed drawing and the frame's budget did not reach it: it shows its last map.
+    /// The view needed drawing, but the frame's budget did not suffice: it keeps its last map, or is lit if it has
+    /// none.
     Deferred,
-    /// Nothing casts onto anything that it sees; there is no map, and all is lit.
+    /// Nothing casts onto any receiver that the view covers: it has no map, and its receivers are lit.
     Empty,
 }
 
-/// One view of a light in one frame.
+/// Reports on one view of a light in one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ViewReport {
-    /// Layer of the depth texture.
+    /// Is the layer of the depth texture that the view is rendered into.
     pub layer: u32,
-    /// What became of it.
+    /// Tells how the view was brought up to date.
     pub status: ViewStatus,
-    /// Casters in the view: the draws of its pass, where there was one, and what was copied. In one pass with
-    /// other faces, all that it draws.
+    /// Counts the casters in the view: those that its pass drew, if it had one, and those that were copied. Where all
+    /// faces of a point light were drawn in one pass, it counts all casters of that pass.
     pub casters: u32,
-    /// Casters of these that were not drawn: they stood still for some frames, and the layer that is kept of them was copied
-    /// under the others.
+    /// Counts those of the casters that were not drawn: they had not changed for some frames, and the static-caster
+    /// cache, which contains them, was copied into the layer before the other casters were drawn.
     pub copied: u32,
-    /// Triangles of those casters that were not copied, as far as they tell ([`ShadowCaster::triangles`](crate::ShadowCaster::triangles)).
+    /// Counts the triangles of the casters that were not copied, as far as the casters report them
+    /// ([`ShadowCaster::triangles`](crate::ShadowCaster::triangles)).
     pub triangles: u64,
-    /// Casters left out because nothing of them can fall on what the view covers.
+    /// Counts the casters that were culled because their shadows cannot fall on what the view covers.
     pub culled: u32,
-    /// World size of a texel along the map's x and y; for a local light at the end of its reach, where it is largest.
+    /// Is the world size of a texel along the map's x and y. For a local light it is that at the end of the light's
+    /// reach, where it is largest. It is zero for a view without a map.
     pub texel_size_world: Vec2,
-    /// World distance from the near plane to the far plane, or to the end of a local light's reach.
+    /// Is the world distance from the near plane to the far plane, or to the end of a local light's reach. It is zero
+    /// for a view without a map.
     pub depth_range_world: f32,
-    /// Height in world units above which a caster that lies on a surface always casts onto it: the worst gap (peter-panning)
-    /// that the light's bias can leave, at the worst angle.
+    /// Is the height in world units above which a caster that lies on a surface always casts its full shadow onto it:
+    /// the largest gap (peter-panning) that the light's bias can leave, at the worst angle of the light.
     pub max_peter_panning_world: f32,
-    /// For a cascade of a camera's view: its slice, and how much of the map falls on it.
+    /// Describes the slice of a camera's view that a cascade covers, and how much of the map falls on it. It is `None`
+    /// for all other views.
     pub slice: Option<SliceReport>,
 }
 
 impl ViewReport {
-    /// A view that nothing casts into.
+    /// Returns the report of a view into which nothing casts.
     pub(crate) fn empty(layer: u32, culled: u32) -> Self {
         Self {
             layer,
@@ -65,23 +70,26 @@ impl ViewReport {
     }
 }
 
-/// What a light did in a frame.
+/// Reports what a light did in a frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct ShadowReport {
-    /// One entry per view, in the order of the frame's lights and of the layers of each.
+    /// Has one entry per view, in the order of the frame's lights and of the layers of each.
     pub views: Vec<ViewReport>,
-    /// The frame's bounds that are infinite or not numbers. What they bound is left out, without a shadow.
+    /// Lists the bounds of casters and receivers that have a NaN or an infinite corner. Their objects are left out of
+    /// the frame: such a caster has no shadow.
     pub broken_bounds: Vec<BrokenBounds>,
-    /// Depth passes recorded: one per drawn view, two where what stands still was drawn into a layer of its own first; a single
-    /// one for all faces of a point light where that is cheaper ([`OmniShadow`](crate::OmniShadow) tells when).
+    /// Counts the depth passes that were recorded: one per drawn view, two where the static-caster cache was drawn
+    /// first, and a single one for all faces of a point light where that is cheaper ([`OmniShadow`](crate::OmniShadow)
+    /// states when).
     pub passes: u32,
-    /// Device memory of the depth texture and of the layers that are kept of what stands still.
+    /// Is the device memory, in bytes, of the depth texture and of the static-caster caches.
     pub bytes_held: u64,
 }
 
 impl ShadowReport {
-    /// Casters drawn: once for each view that was drawn, or once in all where six faces were drawn in one pass.
+    /// Returns the number of casters drawn. A caster counts once for each view that was drawn with it, or once in all
+    /// where six faces were drawn in one pass.
     pub fn draws(&self) -> u32 {
         let draws = self
             .drawn()
@@ -93,7 +101,7 @@ impl ShadowReport {
         }
     }
 
-    /// Triangles drawn, summed over the views that were drawn, as far as casters tell.
+    /// Returns the number of triangles drawn, summed over the views that were drawn, as far as the casters report them.
     pub fn triangles(&self) -> u64 {
         self.drawn()
             .map(|view| view.triangles)

@@ -1,31 +1,31 @@
-//! What a lookup needs to know of a light's maps.
+//! Describes a light's maps as lookups need them.
 
 use crate::receive::{Sampling, ShadowViewUniform};
 
-/// The maps of a light as its WGSL and its bind group see them.
+/// Describes the maps of a light to the code that emits its WGSL and creates its bind group.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SampledMaps<'a> {
-    /// All layers as an array.
+    /// Is a view of all layers as an array.
     pub map: &'a wgpu::TextureView,
-    /// Uniform buffer with one view a layer.
+    /// Is the uniform buffer, with one view per layer.
     pub views: &'a wgpu::Buffer,
     pub view_count: u32,
-    /// What `views` holds since the last frame.
+    /// Holds the contents of `views` as of the last frame.
     pub uniforms: &'a [ShadowViewUniform],
     pub sampling: Sampling,
     pub selection: Selection,
     pub views_per_light: u32,
-    /// The maps are those of a pool, whose lights are looked up by index.
+    /// States that the maps are those of a pool, whose lights are selected by index.
     pub indexed: bool,
 }
 
-/// How a place chooses among a light's views; everything after the choice is the same for all lights.
+/// Tells how a position selects one of a light's views. Everything after that is the same for all lights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Selection {
-    /// The first view that holds the whole kernel: the cascades of a directional light, near to far.
+    /// Selects the first view that contains the whole kernel: the cascades of a directional light, from near to far.
     Cascades,
-    /// There is one: a spot.
+    /// Selects the only view: that of a spot light.
     OneView,
-    /// The face of a cube, by the major axis from the light.
+    /// Selects a face of a cube by the major axis of the vector from the light.
     CubeFace,
 }

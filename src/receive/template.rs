@@ -1,9 +1,9 @@
-//! The WGSL templates under `wgsl/template/`: each is a struct here, with a field for every hole.
+//! Fills the WGSL templates under `wgsl/template/`. Each template is a struct here, with a field for every hole.
 //!
-//! A hole is the part of an identifier that is in capitals, such as `NAME` in `shadow_views_NAME`. The library's own constants,
-//! which begin with `SHADOW_`, have no holes, and neither have comments. Together with the declarations in
-//! `wgsl/template/holes.wgsl` the templates are valid WGSL as they stand. The tests below check that the fields of every struct
-//! are exactly the holes of its file, so filling a template cannot fail.
+//! A hole is the part of an identifier that is in capitals, such as `NAME` in `shadow_views_NAME`. The library's own
+//! constants, which begin with `SHADOW_`, have no holes, and comments have none either. Together with the declarations
+//! in `wgsl/template/holes.wgsl` the templates are valid WGSL as they stand. The tests below check that the fields of
+//! every struct are exactly the holes of its file, so filling a template cannot fail.
 
 use std::ops::Range;
 
@@ -26,7 +26,7 @@ macro_rules! templates {
             }
         )*
 
-        /// File, text and fields of every template.
+        /// Lists the file, the text and the fields of every template.
         #[cfg(test)]
         const ALL: &[(&str, &str, &[&str])] = &[
             $(($file, <$template<'static>>::SOURCE, &[$(stringify!($hole)),*])),*
@@ -35,30 +35,30 @@ macro_rules! templates {
 }
 
 templates! {
-    /// The number of the bind group.
+    /// Declares the number of the bind group.
     Group("group.wgsl") { group }
-    /// A sampler, which all lights share.
+    /// Declares a sampler, which all lights share.
     Sampler("sampler.wgsl") { sampler_binding, sampler, sampler_type }
-    /// Uniforms and map of a light.
+    /// Declares the uniforms and the map of a light.
     Bindings("bindings.wgsl") { views_binding, map_binding, name, array_length, map_type }
-    /// `shadow_view_NAME` of a directional light.
+    /// Defines `shadow_view_NAME` of a directional light.
     Cascades("cascades.wgsl") { name, index, view_count }
-    /// `shadow_view_NAME` of a spot light.
+    /// Defines `shadow_view_NAME` of a spot light.
     OneView("one_view.wgsl") { name, index, first_view, view_count }
-    /// `shadow_view_NAME` of a point light.
+    /// Defines `shadow_view_NAME` of a point light.
     CubeFace("cube_face.wgsl") { name, index, first_view, any_view, view_count }
-    /// `shadow_NAME` by one lookup in one view.
+    /// Defines `shadow_NAME` as one lookup in one view.
     SingleLookup("single_lookup.wgsl") { name, index, view_count, bias, filter, sampler, limit }
-    /// `shadow_NAME` by a lookup in each of the cascades that blend at a position.
+    /// Defines `shadow_NAME` as the weighted mean of a lookup in each of the cascades that blend at a position.
     BlendedLookup("blended_lookup.wgsl") { name, index, view_count, bias, filter, sampler, limit }
-    /// `shadow_NAME` by lookups in many directions from a point light.
+    /// Defines `shadow_NAME` as the mean of lookups in many directions from a point light.
     MeanLookup("mean_lookup.wgsl") {
         name, index, any_view, view_count, pattern, sample_count, sample_count_f32, surface, normal, bias, filter, sampler, limit
     }
 }
 
-/// Returns `source` with its holes replaced by the values that go by their names. An empty value takes the rest of its list item
-/// with it, up to and including the comma.
+/// Returns `source` with each hole replaced by the value of its name. Where the value is empty, the rest of the list
+/// item is removed as well, up to and including the comma.
 fn fill(source: &str, values: &[(&str, &str)]) -> String {
     let mut text = String::with_capacity(source.len());
     for line in source.split_inclusive('\n') {
@@ -97,7 +97,7 @@ fn first_hole(code: &str) -> Option<Range<usize>> {
     }
 }
 
-/// Returns the range of the hole in an identifier: of its words in capitals, which stand between underscores.
+/// Returns the range of the hole in an identifier, which consists of the words in capitals between underscores.
 fn hole_of(identifier: &str) -> Option<Range<usize>> {
     if identifier.starts_with("SHADOW_") {
         return None;
@@ -119,7 +119,7 @@ mod tests {
 
     use super::{ALL, fill, first_hole};
 
-    /// The names of all holes of a text, in lower case.
+    /// Returns the names of all holes of a text, in lower case.
     fn holes(source: &str) -> BTreeSet<String> {
         let mut found = BTreeSet::new();
         for line in source.lines() {
@@ -147,7 +147,8 @@ mod tests {
         assert!(failures.is_empty(), "{}", failures.join("\n"));
     }
 
-    /// Every file of the folder is a template, but for the one that declares their holes; and that one declares no others.
+    /// Checks that every file of the folder is a template, except the one that declares their holes, and that this file
+    /// declares exactly the holes of the templates.
     #[test]
     fn files_are_the_templates() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("wgsl/template");
@@ -178,12 +179,12 @@ mod tests {
             filled("NAME_COUNT NAME_radius my_NAME_b"),
             "2u sun_radius my_sun_b"
         );
-        // Constants of the library, types, comments, and what only contains the letters are no holes.
+        // Constants of the library, types, comments, and words that merely contain the letters are not holes.
         let kept = "SHADOW_NAME ShadowNAME NAMEs aNAME // NAME\n";
         assert_eq!(filled(kept), kept);
         assert_eq!(filled("f(INDEX: u32, a: f32)"), "f(a: f32)");
         assert_eq!(filled("f(b, INDEX, NAME)"), "f(b, sun)");
-        // A hole without a value stays, and so does not compile.
+        // A hole without a value remains, so that the text does not compile.
         assert_eq!(filled("OTHER NAME"), "OTHER sun");
     }
 }

@@ -1,32 +1,34 @@
-//! How the filters that compare each texel come by the texels: by gathers, or where a device has none by samples.
+//! Determines how the filters that compare each texel read the texels: by gathers, or by samples where a device has no
+//! gather.
 
 use crate::error::DeviceRefusal;
 use crate::gpu::{capture_device_errors, fullscreen_pipeline};
 use crate::shader;
 
+/// Tells how shaders read single texels of a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum TexelAccess {
-    /// `wgsl/texels.wgsl`: the map is a depth texture.
+    /// Gathers from a depth texture, by `wgsl/texels.wgsl`.
     Gathers,
-    /// `wgsl/texels_by_samples.wgsl`: the map is a texture of unfilterable floats.
+    /// Samples a texture of unfilterable floats, by `wgsl/texels_by_samples.wgsl`.
     Samples,
 }
 
 impl TexelAccess {
-    /// What shaders of `device` can do. All backends gather but OpenGL's, where GLSL ES 3.00 has no gather; there a pipeline
-    /// that does is tried, so that nothing is guessed from names and versions.
+    /// Returns what shaders of `device` can do. All backends can gather except OpenGL, where GLSL ES 3.00 has no
+    /// gather. There a pipeline that gathers is created as a test, so that nothing depends on names and versions.
     pub fn of(device: &wgpu::Device) -> Self {
         if device.adapter_info().backend != wgpu::Backend::Gl {
             return Self::Gathers;
         }
         match capture_device_errors(device, || gathering_pipeline(device)) {
             Err(DeviceRefusal::Refused(_)) => Self::Samples,
-            // A device that is lost or out of memory says so again where it is asked for what is wanted.
+            // A device that is lost or out of memory returns that error again when the bind group is created.
             Ok(_) | Err(_) => Self::Gathers,
         }
     }
 
-    /// The module that takes the place of another for this access.
+    /// Returns the module that this access needs instead of the default one.
     pub const fn module(self) -> Option<&'static str> {
         match self {
             Self::Gathers => None,
@@ -34,7 +36,7 @@ impl TexelAccess {
         }
     }
 
-    /// The map's type in WGSL, as `ShadowMap` of the module.
+    /// Returns the map's type in WGSL, which is the module's alias `ShadowMap`.
     pub const fn map_wgsl(self) -> &'static str {
         match self {
             Self::Gathers => "texture_depth_2d_array",
@@ -42,7 +44,7 @@ impl TexelAccess {
         }
     }
 
-    /// The same in a layout.
+    /// Returns the map's type in a bind group layout.
     pub const fn map_binding(self) -> wgpu::BindingType {
         let sample_type = match self {
             Self::Gathers => wgpu::TextureSampleType::Depth,
@@ -56,6 +58,7 @@ impl TexelAccess {
     }
 }
 
+/// Creates a pipeline whose fragment shader gathers from a depth texture.
 fn gathering_pipeline(device: &wgpu::Device) -> wgpu::RenderPipeline {
     const LABEL: &str = "shadow gather probe";
     let entry = |binding, ty| wgpu::BindGroupLayoutEntry {

@@ -1,4 +1,4 @@
-//! The layout that Rust and WGSL share.
+//! Defines the layout of the uniforms that Rust and WGSL share.
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
@@ -8,103 +8,111 @@ use crate::gpu::DepthFormat;
 use crate::receive::bias::lateral_error_texels;
 use crate::receive::{Bias, Filter};
 
-/// What the WGSL functions read of one view of a light: the bytes of the WGSL struct `ShadowViewUniform`.
+/// Holds what the WGSL functions read of one view of a light: the bytes of the WGSL struct `ShadowViewUniform` in
+/// `wgsl/view.wgsl`.
 ///
-/// [`ShadowMaps::uniform_buffer`](crate::ShadowMaps::uniform_buffer) already holds these for every layer of a light. An engine
-/// that keeps them in a buffer of its own copies the bytes of
+/// [`ShadowMaps::uniform_buffer`](crate::ShadowMaps::uniform_buffer) already holds these for every layer of a light. An
+/// engine that keeps them in a buffer of its own copies the bytes of
 /// [`ShadowMaps::view_uniforms`](crate::ShadowMaps::view_uniforms) after each frame, for instance with
-/// `bytemuck::cast_slice`. Their layout is that of a uniform buffer: an `array<ShadowViewUniform, N>` in WGSL has a stride of
-/// [`SIZE_BYTES`](Self::SIZE_BYTES) and no padding.
+/// `bytemuck::cast_slice`. Their layout is that of a uniform buffer: an `array<ShadowViewUniform, N>` in WGSL has a
+/// stride of [`SIZE_BYTES`](Self::SIZE_BYTES) and no padding.
 ///
-/// The members are read by the library's own WGSL alone and may change with every version, so the bytes belong to the WGSL of
-/// the same version. [`ShadowMaps::views`](crate::ShadowMaps::views) tells what each view covers.
+/// The members are read only by the library's own WGSL and may change with every version, so the bytes belong to the
+/// WGSL of the same version. [`ShadowMaps::views`](crate::ShadowMaps::views) returns what each view covers.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct ShadowViewUniform {
-    /// Homogeneous texel x, texel y, depth and w from coordinates relative to the anchor; columns.
+    /// Transforms coordinates relative to the anchor to homogeneous texel x, texel y, ndc depth and w; stored as
+    /// columns.
     pub(crate) texel_from_anchor: [[f32; 4]; 4],
-    /// Row of the inverse transpose that gives a plane's component along texel x.
+    /// Is the row of the inverse transpose that gives a plane's component along texel x.
     pub(crate) plane_across: [f32; 4],
-    /// The same along texel y.
+    /// Is the row that gives a plane's component along texel y.
     pub(crate) plane_down: [f32; 4],
-    /// The same along depth.
+    /// Is the row that gives a plane's component along ndc depth.
     pub(crate) plane_depth: [f32; 4],
-    /// Toward the light along the view's axis; w is 1 for a local light, whose place is the anchor, and 0 for a directional one.
+    /// Is the unit vector toward the light along the view's axis, in render space. w is 1 for a local light, which is
+    /// at the anchor, and 0 for a directional one.
     pub(crate) light: [f32; 4],
-    /// A point of render space inside the view.
+    /// Is a point of render space inside the view; for a local light, the light's position.
     pub(crate) anchor: [f32; 3],
-    /// Layer of the map.
+    /// Is the layer of the map.
     pub(crate) layer: u32,
-    /// Texels between which a lookup stays inside the map, kernel and bias included: x and y from, x and y to.
+    /// Bounds the texel coordinates at which a lookup stays inside the map, with kernel and bias included: least x,
+    /// least y, greatest x, greatest y. The least ones exceed the greatest ones where nothing casts into the view.
     pub(crate) inner: [f32; 4],
-    /// Texels per side.
+    /// Is the number of texels per side.
     pub(crate) map_size: f32,
-    /// Absolute rounding error of a comparison in ndc depth.
+    /// Is the absolute rounding error of a comparison, in ndc depth.
     pub(crate) depth_error: f32,
-    /// Rounding error of a comparison relative to the depth.
+    /// Is the rounding error of a comparison in relation to the depth.
     pub(crate) depth_error_relative: f32,
-    /// Error across the map in texels.
+    /// Is the error of a lookup's position across the map, in texels.
     pub(crate) lateral_error: f32,
-    /// Offset along the normal in texels times |nx| + |ny|.
+    /// Is the offset along the normal, in texels times |nx| + |ny| of the normal in light space.
     pub(crate) offset_texels: f32,
-    /// Offset along the normal in world units.
+    /// Is the offset along the normal, in world units, that allows for the rounding of render coordinates.
     pub(crate) offset_world: f32,
-    /// Manual bias: constant, world units.
+    /// Is the constant of a manual bias in world units; 0 for the other biases.
     pub(crate) manual_constant: f32,
-    /// Manual bias: slope, world units.
+    /// Is the slope of a manual bias in world units; 0 for the other biases.
     pub(crate) manual_slope: f32,
-    /// Edge sharpness.
+    /// Is the edge sharpness of the filter; 1 leaves its ramp as it is.
     pub(crate) sharpness: f32,
-    /// World distance from the anchor beyond which a local light does not reach; huge for a directional one.
+    /// Is the world distance from the anchor beyond which a local light does not reach; at most 1e18, the
+    /// value for a directional light.
     pub(crate) range: f32,
-    /// Cosine of the half-angle of a cone around the view's axis; -2 for none.
+    /// Is the cosine of the half-angle of the cone around the view's axis; -2 if there is no cone.
     pub(crate) cone_cosine: f32,
-    /// Radius in world units of the direction-space filters.
+    /// Is the radius in world units of the direction-space filters; 0 for the other filters.
     pub(crate) sample_radius: f32,
-    /// The viewer in render space; w is 1, or 0 where no viewer is known.
-    pub(crate) viewer: [f32; 4],
-    /// Texels along x and y over which a light with size spreads a penumbra, per difference of ndc depth.
+    /// Is the position of the first camera in render space. w is 1, or 0 where the frame has no camera.
+    pub(crate) camera: [f32; 4],
+    /// Is the radius of a penumbra in texels along x and y, per difference of ndc depth between occluder and receiver;
+    /// 0 for filters without a light size.
     pub(crate) penumbra: [f32; 2],
-    /// Texels from the border within which a cascade gives way to the next; 0 for an end without one.
+    /// Is the distance from the border, in texels, within which a cascade blends into the next one; 0 without blending.
     pub(crate) fade_texels: f32,
-    /// Where the first texel lies in a grid that is fixed in the world, modulo 65536: x in the low half, y in the high.
+    /// Is the position of the map's first texel in a texel grid that is fixed in the world, modulo 65536: x in the low
+    /// 16 bits, y in the high 16 bits.
     pub(crate) grid: u32,
     /// Is where shadows end: a plane for a directional light, coefficients of the distance for a local one.
     pub(crate) limit: [f32; 4],
 }
 
 impl ShadowViewUniform {
-    /// Size in bytes, and stride in an array: a multiple of 16, as uniform buffers require.
+    /// Is the size in bytes, and the stride in an array: a multiple of 16, as uniform buffers require.
     pub const SIZE_BYTES: u64 = size_of::<Self>() as u64;
 }
 
-/// Bytes of the uniforms of `views` views.
+/// Returns the size in bytes of the uniforms of `views` views.
 pub(crate) fn view_uniform_bytes(views: u64) -> u64 {
     views * ShadowViewUniform::SIZE_BYTES
 }
 
-/// A range for the uniforms: an endless one becomes a distance that none exceeds and whose square is finite.
+/// Returns a range for the uniforms. An infinite one becomes a distance that no position exceeds and whose square is
+/// finite.
 pub(crate) fn endless_range(reach_world: f64) -> f32 {
     reach_world.min(1e18) as f32
 }
 
-/// How the maps of a light are looked up.
+/// Holds the settings with which the maps of a light are sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Sampling {
     pub filter: Filter,
     pub bias: Bias,
     pub depth_format: DepthFormat,
-    /// Share of a cascade's width in which it gives way to the next.
+    /// Is the fraction of a cascade's width over which it blends into the next one.
     pub(crate) blend: f32,
     /// Is the fraction of the distance at which shadows end over which they fade to light.
     pub(crate) fade: f32,
 }
 
-/// What rounding may move a lookup by: 6uN is 1/350 of a texel at N = 8192.
+/// Bounds the distance in texels by which rounding may move a lookup: the error `6uN` is 1/350 of a texel at N = 8192.
 const ROUNDING_TEXELS: f64 = 1.0 / 64.0;
 
 impl Sampling {
-    /// Of maps of 32 bits that do not blend.
+    /// Returns the settings for maps of 32 bits without blending.
     pub fn new(filter: Filter, bias: Bias) -> Self {
         Self {
             filter,
@@ -115,27 +123,29 @@ impl Sampling {
         }
     }
 
-    /// Height in world units above which a caster that lies on a surface always casts onto it: what the bias leaves open, and
-    /// two steps of the map's format: one by which a receiver is set back, and one by which the caster may be stored too far.
+    /// Returns the height in world units above which a caster that lies on a surface always casts onto it: the gap that
+    /// the bias can leave, and two steps of the map's format. One step is added to the receiver's depth, and by another
+    /// the caster may be stored too far away.
     pub fn max_peter_panning_world(&self, view: &ShadowView) -> f32 {
         let step = self.depth_format.step_ndc() * f64::from(view.depth_range_world());
         self.bias.max_peter_panning_world(self.filter, view) + 2.0 * step as f32
     }
 
-    /// Height in texels, above a surface, below which a caster may be left without its shadow on it, at the worst angle.
+    /// Returns the height above a surface, in texels, below which a caster may leave no shadow on it, at the worst
+    /// angle.
     pub fn gap_texels(&self) -> f64 {
         let reach = self.bias.offset_texels(self.filter) + self.filter.reach_texels();
         reach * std::f64::consts::SQRT_2
     }
 
-    /// Texels by which a lookup may leave the place of its receiver: the filter's reach, the way that an offset along the
-    /// normal can lead across the map, and rounding.
+    /// Returns the number of texels by which a lookup may deviate from the position of its receiver: the filter's
+    /// reach, the distance across the map by which an offset along the normal can move it, and rounding.
     pub fn border_texels(&self) -> f64 {
         let sideways = self.bias.offset_texels(self.filter) * std::f64::consts::SQRT_2;
         self.filter.reach_texels() + sideways + ROUNDING_TEXELS
     }
 
-    /// Whole texels kept free on every side of a fitted map so that no kernel leaves it.
+    /// Returns the number of whole texels that a fitted map keeps free on every side, so that no kernel leaves it.
     pub fn margin_texels(&self) -> u32 {
         self.border_texels().ceil() as u32
     }
@@ -144,8 +154,8 @@ impl Sampling {
 /// Limits nothing: the weight of shadows is one everywhere.
 pub(crate) const NO_LIMIT: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 
-/// A view that nothing casts into: no receiver is inside it. The anchor of a light that lies farther away than f32 reaches is
-/// as far away as f32 does.
+/// Returns the uniform of a view into which nothing casts: no receiver is inside it. The anchor of a light beyond the
+/// range of f32 is clamped to that range.
 pub(crate) fn empty_view_uniform(layer: u32, anchor_render: Vec3) -> ShadowViewUniform {
     ShadowViewUniform {
         inner: [1.0, 1.0, 0.0, 0.0],
@@ -157,14 +167,14 @@ pub(crate) fn empty_view_uniform(layer: u32, anchor_render: Vec3) -> ShadowViewU
     }
 }
 
-/// The uniform of `view`.
+/// Returns the uniform of `view`.
 pub(crate) fn view_uniform(view: &ShadowView, sampling: &Sampling) -> ShadowViewUniform {
     let texel_from_anchor = view.texel_from_anchor();
-    // A plane is a row vector and goes through the inverse: plane_texel = plane_render * inverse(texel_from_anchor). Its
-    // component along texel x is a product with the inverse's first column.
+    // A plane is a row vector and is transformed by the inverse: plane_texel = plane_render *
+    // inverse(texel_from_anchor). Its component along texel x is the product with the inverse's first column.
     let anchor_from_texel = texel_from_anchor.inverse();
     let size = f64::from(view.map_size());
-    // Where a map is smaller than its borders, only its middle remains.
+    // Only the middle of a map that is smaller than its borders remains.
     let border = (sampling.border_texels() - ROUNDING_TEXELS).min(size * 0.5);
     let inner = [border, border, size - border, size - border].map(|texel| texel as f32);
     let (depth_error, depth_error_relative) = view.depth_error_ndc();
@@ -190,7 +200,7 @@ pub(crate) fn view_uniform(view: &ShadowView, sampling: &Sampling) -> ShadowView
         range: endless_range(view.reach_world()),
         cone_cosine: view.cone_cosine() as f32,
         sample_radius: sampling.filter.radius_world(),
-        viewer: [0.0; 4],
+        camera: [0.0; 4],
         penumbra: view
             .penumbra_texels(f64::from(sampling.filter.light_size()))
             .as_vec2()
@@ -209,8 +219,8 @@ mod tests {
     use super::{ShadowViewUniform, Zeroable};
     use crate::shader;
 
-    /// Every member has the offset, the size and the name in Rust that it has in WGSL, and the whole has one size, so that arrays
-    /// of it have one stride.
+    /// Checks that every member has the offset, the size and the name in Rust that it has in WGSL. The structs have the
+    /// same size, so that arrays of them have the same stride.
     #[test]
     fn rust_and_wgsl_have_one_layout() {
         macro_rules! members {
@@ -225,7 +235,7 @@ mod tests {
         let in_rust = members!(
             texel_from_anchor plane_across plane_down plane_depth light anchor layer inner map_size depth_error
             depth_error_relative lateral_error offset_texels offset_world manual_constant manual_slope sharpness range
-            cone_cosine sample_radius viewer penumbra fade_texels grid
+            cone_cosine sample_radius camera penumbra fade_texels grid
         );
         let source = shader::compose(&["view"]).expect("a module of the table");
         let module = naga::front::wgsl::parse_str(&source).expect("valid WGSL");

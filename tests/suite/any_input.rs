@@ -1,5 +1,5 @@
-//! Numbers of any magnitude and sign, whole and broken, in every field of a frame: an answer or an error, never a panic, never
-//! an error of the device.
+//! Puts numbers of any magnitude and sign, finite or not, into every field of a frame: each call returns a result or an
+//! error, never panics, and causes no error of the device.
 
 use glam::{DVec3, Mat4, Vec3, Vec4};
 use wgpu_shadows::{
@@ -16,7 +16,7 @@ use crate::support::report::assert_whole;
 use crate::support::scene::{Mesh, default_pipeline};
 use crate::support::watched::Watched;
 
-/// Numbers, of which one in `tameness` is odd and one more has random bits.
+/// Draws numbers, of which one in `tameness` is unusual and one more has random bits.
 struct Numbers {
     random: Random,
     tameness: usize,
@@ -81,7 +81,7 @@ fn no_frame_breaks_a_sun() {
     for case in 0..600 {
         let mut numbers = Numbers {
             random: Random::new(case),
-            // Every third frame is mostly whole, or few would be accepted.
+            // Every third frame contains mostly ordinary numbers, since few would be accepted otherwise.
             tameness: if case % 3 == 0 { 60 } else { 6 },
         };
         let low = numbers.vector();
@@ -123,7 +123,7 @@ fn no_frame_breaks_a_sun() {
         accepted > 100 && refused > 100,
         "{accepted} accepted, {refused} refused"
     );
-    // And a good frame after all that has its shadow.
+    // A valid frame after all of these still has its shadow.
     let slab = mesh.caster(gpu, &pipeline, Mat4::IDENTITY);
     let frame = DirectionalFrame {
         origin: DVec3::ZERO,

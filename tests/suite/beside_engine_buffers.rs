@@ -1,7 +1,8 @@
-//! The emitted functions in render pipelines whose other bind groups hold uniform buffers of the engine's: whatever buffers
-//! come before the lights', a picture comes out, and the same one.
+//! Calls the emitted functions in render pipelines whose other bind groups contain uniform buffers of the engine.
+//! Whatever buffers precede those of the lights, an image is drawn, and always the same one.
 //!
-//! Vulkan drivers have crashed here, so the drawing is done in a process of its own, and by Vulkan whatever the run is on.
+//! Vulkan drivers have crashed here, so the drawing is done in a process of its own, and with Vulkan whatever the
+//! backend of the run.
 
 use std::collections::BTreeSet;
 
@@ -15,7 +16,7 @@ use crate::support::lights::{Kind, Light, stage};
 
 type Set = Vec<Kind>;
 
-/// Each kind twice, and sets of different kinds, among them one with all.
+/// Returns each kind twice, and sets of different kinds, among them one with all kinds.
 fn sets() -> Vec<Set> {
     let [sun, cascades, _, spot, lamp, spots, lamps] = Kind::ALL;
     let alike = Kind::ALL.map(|kind| vec![kind; 2]);
@@ -28,7 +29,7 @@ fn sets() -> Vec<Set> {
     alike.into_iter().chain(mixed).collect()
 }
 
-/// The default filter, the sampler's own, and for sets of cubes the ones that look along directions.
+/// Returns the default filter, the sampler's own, and for sets of cubes the direction-space filters.
 fn filters(set: &Set) -> Vec<Filter> {
     let mut filters = vec![Filter::default(), Filter::Hardware];
     if set.iter().all(|kind| kind.has_cube()) {
@@ -37,11 +38,12 @@ fn filters(set: &Set) -> Vec<Filter> {
     filters
 }
 
-/// Group of the lights and number of the engine's buffers in each group before it: all groups that WebGPU's devices have at
-/// least, and two lights of one kind everywhere from first to eleventh of the stage's buffers.
+/// Lists the group of the lights and the number of engine buffers in each group before it. They cover all groups that
+/// every WebGPU device has, and put two lights of one kind at every position from the first to the eleventh of the
+/// stage's buffers.
 const LAYOUTS: [(u32, u32); 6] = [(0, 0), (1, 1), (2, 1), (1, 3), (3, 1), (3, 3)];
 
-/// The layouts whose buffers a stage can have.
+/// Returns the layouts whose number of buffers a stage can have.
 fn layouts(set: &Set) -> impl Iterator<Item = (u32, u32)> {
     let most = wgpu::Limits::default().max_uniform_buffers_per_shader_stage;
     let left = most - set.len() as u32;
@@ -50,7 +52,7 @@ fn layouts(set: &Set) -> impl Iterator<Item = (u32, u32)> {
         .filter(move |(group, buffers)| group * buffers <= left)
 }
 
-/// The number of pictures that [`draw_all`] draws.
+/// Returns the number of images that [`draw_all`] draws.
 fn combinations() -> usize {
     let of_set = |set: &Set| filters(set).len() * layouts(set).count();
     sets().iter().map(of_set).sum()
@@ -76,7 +78,7 @@ fn draw_all() -> usize {
                 .collect();
             let mut wanted = None;
             for (group, buffers) in layouts(&set) {
-                // So that the last line before a crash tells where it was.
+                // The last line before a crash then tells which combination it was.
                 let name = format!("{set:?} {filter:?} in group {group}, {buffers} before");
                 println!("{name}");
                 let seen = picture(gpu, &lights, group, buffers);
@@ -90,7 +92,7 @@ fn draw_all() -> usize {
     drawn
 }
 
-/// Schemes of bias, as an engine with bindings of its own calls them.
+/// Lists the bias schemes with the WGSL that an engine with its own bindings calls.
 const BIASES: [(Bias, &str); 3] = [
     (Bias::Auto, "plane"),
     (Bias::NormalOffset, "normal_offset"),
@@ -103,10 +105,10 @@ const BIASES: [(Bias, &str); 3] = [
     ),
 ];
 
-/// Uniform buffers of the engine's before the view.
+/// Is the number of uniform buffers of the engine before the view.
 const BEFORE_OWN_VIEW: std::ops::Range<u32> = 0..9;
 
-/// The modules with one view as a uniform of the engine's own, behind so many others.
+/// The modules work with one view as a uniform of the engine's own, behind as many other buffers.
 #[test]
 fn own_views_draw_behind_any_buffers() {
     let name = "suite::beside_engine_buffers::own_views_draw_behind_any_buffers";
@@ -219,7 +221,7 @@ fn own_light(position: vec3<f32>, normal: vec3<f32>) -> f32 {{
     draw(gpu, &pipeline, &[&buffer_group, &map_group])
 }
 
-/// A picture of shadow and light proves something.
+/// Asserts that an image contains both shadow and light; an image without both proves nothing.
 fn assert_both_greys(picture: &RgbaImage, name: &str) {
     let greys: BTreeSet<_> = picture.pixels().map(|pixel| pixel.0[0]).collect();
     assert!(greys.len() > 1, "{name}: {greys:?}");

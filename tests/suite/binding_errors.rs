@@ -1,5 +1,5 @@
-//! What `ShadowBindings`, `shader::compose` and `DebugView` refuse: each error provoked, compared as a value, and read as a
-//! message.
+//! Tests what `ShadowBindings`, `shader::compose` and `DebugView` refuse: each error is provoked, compared as a value,
+//! and read as a message.
 
 use wgpu_shadows::{
     DirectionalShadow, DirectionalShadowDescriptor, ShadowBindings, ShadowBindingsDescriptor,
@@ -20,7 +20,7 @@ fn tiny_sun(gpu: &Gpu, cascades: u32) -> DirectionalShadow {
     DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun")
 }
 
-/// An engine's names become WGSL identifiers, so they must be such, and must not be the library's own.
+/// An engine's names become WGSL identifiers, so they must be valid identifiers and must differ from the library's own.
 #[test]
 fn light_names_that_are_no_identifiers() {
     let gpu = gpu();
@@ -44,13 +44,13 @@ fn light_names_that_are_no_identifiers() {
         "the sun",
         "sun-light",
         "sön",
-        // Functions that the library has already.
+        // These are names of functions that the library has already.
         "plane",
         "geometric_normal",
         "gather",
         "sharpen",
         "filter_nearest",
-        // Functions of a view, beside which `shadow_view_NAME` stands.
+        // These are functions of a view, whose names begin as `shadow_view_NAME` does.
         "holds",
         "covers",
         "weight",
@@ -78,8 +78,8 @@ fn light_names_that_are_no_identifiers() {
     );
 }
 
-/// Names that would meet the library's own variables, or those of another light, are refused or spelled otherwise: what is
-/// emitted compiles.
+/// Names that would coincide with the library's own variables or with those of another light are refused or spelled
+/// differently: what is emitted compiles.
 #[test]
 fn light_names_that_meet_others() {
     let gpu = gpu();
@@ -133,7 +133,7 @@ fn bindings_beyond_the_devices_limits() {
         format!("{message}{maximum}, got {group}")
     );
 
-    // As many lights as a stage has uniform buffers, which are the fewest, and one more.
+    // A stage has the fewest bindings for uniform buffers: as many lights are accepted, and one more is refused.
     let most = limits.max_uniform_buffers_per_shader_stage as usize;
     let letter = |index: usize| char::from(b'a' + (index % 26) as u8);
     let names: Vec<_> = (0..=most)
@@ -158,7 +158,7 @@ fn bindings_beyond_the_devices_limits() {
     assert_eq!(
         error.to_string(),
         format!(
-            "ShadowBindingsDescriptor::lights need {needed} {limit}, and the device has {maximum}"
+            "ShadowBindingsDescriptor::lights: the device's {limit} must be at least {needed}, and it is {maximum}"
         )
     );
 }
@@ -170,7 +170,7 @@ fn modules_that_do_not_exist() {
     assert_eq!(error, BindingsError::UnknownModule { name });
     assert_eq!(
         error.to_string(),
-        "there is no shader module named \"no_such\""
+        "shader::compose: every name must be that of a module in shader::MODULES, got \"no_such\""
     );
 }
 

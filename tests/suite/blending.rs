@@ -1,4 +1,5 @@
-//! Cascades that give way to each other: no step at any border, and the weighted mean that the twin in f64 computes.
+//! Tests cascades that blend into each other: there is no step at any border, and the weighted mean is that of the CPU
+//! reference.
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::reference::{self, DepthLayer};
@@ -16,8 +17,8 @@ use crate::support::scene::{Mesh, Scene};
 
 const MAP_SIZE: u32 = 128;
 
-/// Planks that float over the floor, across the way into the depth, under a sun whose shadows lead along them: every border
-/// between cascades cuts through edges.
+/// Returns planks that float over the floor, across the direction of view, under a sun whose shadows extend along that
+/// direction: every border between cascades crosses edges.
 fn planks() -> Scene {
     let mut meshes: Vec<_> = (0..6)
         .map(|plank| {
@@ -60,7 +61,7 @@ fn sun(blend: f32) -> (DirectionalShadow, SunProbe) {
     (shadow, probe)
 }
 
-/// Lines of the floor into the depth, in steps of `step`.
+/// Returns lines on the floor along the direction of view, in steps of `step`.
 fn lines(step: f32) -> Vec<Vec<Point>> {
     (0..80)
         .map(|line| {
@@ -83,9 +84,9 @@ fn steepest(probe: &SunProbe, lines: &[Vec<Point>]) -> f32 {
         .fold(0.0, f32::max)
 }
 
-/// Along the way into the depth a step of `d` world units changes an answer by at most `3 d / s` for each axis of the finest
-/// map, texels of `s` (the default's sharpness, a ramp one texel wide), and the weights of two cascades by `d / (blend N s)`
-/// each. Without blending, the borders show as higher steps.
+/// Along the direction of view a step of `d` world units changes a visibility by at most `3 d / s` for each axis of the
+/// finest map, with texels of `s` (the default's sharpness, a ramp that is one texel wide), and the weights of two
+/// cascades by `d / (blend N s)` each. Without blending, the borders show as larger steps.
 #[test]
 fn no_border_is_a_step() {
     let step = 1.0 / 4096.0;
@@ -108,10 +109,11 @@ fn no_border_is_a_step() {
     );
 }
 
-/// The device's answers are the twin's, from the maps read back, to `1e-3`: texel coordinates err by `14uN`, 1e-4 of a texel,
-/// a sample answers no steeper than six per texel, and comparisons are no ties on a floor under floating planks.
+/// The device's results are those of the CPU reference, from the maps read back, to `1e-3`: texel coordinates err by
+/// `14uN`, 1e-4 of a texel, a visibility changes by no more than six per texel, and no comparison is a tie on a floor
+/// under floating planks.
 #[test]
-fn the_mean_is_the_twins() {
+fn the_mean_is_that_of_the_reference() {
     let (shadow, probe) = sun(0.2);
     let layers: Vec<_> = (0..3)
         .map(|layer| readback::depth_layer(gpu(), shadow.maps().texture(), layer))
@@ -148,7 +150,7 @@ fn the_mean_is_the_twins() {
     assert!(mixed > 200, "{mixed} of {all} lie between two maps");
 }
 
-/// What does not blend does not pay: the WGSL then has no weights, nor has that of a single cascade.
+/// Lights that do not blend have no cost for it: their WGSL contains no weights, nor does that of a single cascade.
 #[test]
 fn only_cascades_that_blend_have_weights() {
     for (cascades, blend, weighted) in [(3, 0.0, false), (1, 0.2, false), (3, 0.2, true)] {

@@ -1,9 +1,10 @@
-//! Boxes made of numbers of which some are none: what is broken stays broken, in whatever order it is put together.
+//! Tests boxes made of numbers of which some are NaN: a broken box stays broken, in whatever order it is combined with
+//! others.
 
 use glam::{Mat4, Vec3};
 use wgpu_shadows::Aabb;
 
-/// Two points, and the same with a NaN in one coordinate of either, in both orders.
+/// Returns two points, and the same with a NaN in one coordinate of either, in both orders.
 fn with_nan() -> impl Iterator<Item = [Vec3; 3]> {
     let whole = [Vec3::new(-1.0, 2.0, -3.0), Vec3::new(4.0, 5.0, 6.0)];
     (0..9).map(move |place| {
@@ -33,7 +34,7 @@ fn a_point_that_is_no_number_breaks_its_box() {
     assert_broken(Aabb::from_points([Vec3::NAN]), "NaN alone");
 }
 
-/// One coordinate of twelve is NaN; the other box is whole, empty, or neither.
+/// One coordinate of twelve is NaN; the other box is finite, empty, or neither.
 #[test]
 fn a_union_with_a_broken_box_is_broken() {
     let others = [
@@ -61,7 +62,7 @@ fn a_union_with_a_broken_box_is_broken() {
 }
 
 /// A matrix with a NaN or an infinity in any element of its upper three rows breaks a box around the origin, and leaves
-/// nothing nothing.
+/// an empty box empty.
 #[test]
 fn a_broken_matrix_breaks_boxes() {
     let around = Aabb::new(Vec3::new(-1.0, -2.0, -3.0), Vec3::new(1.0, 2.0, 3.0));

@@ -1,4 +1,4 @@
-//! `DebugView::draw_cascades`: each pixel has the colour of the view that serves what is seen there.
+//! Tests `DebugView::draw_cascades`: each pixel has the colour of the view that covers what is seen there.
 
 use glam::{DVec3, DVec4, Mat4};
 use wgpu_shadows::{
@@ -16,7 +16,7 @@ use crate::support::scene::{Mesh, Scene};
 
 const SIZE: u32 = 96;
 
-/// As in `wgsl/pass/cascade_tint.wgsl`, for three cascades and for none.
+/// Lists the colours of `wgsl/pass/cascade_tint.wgsl` for three cascades and for none.
 const TINTS: [[f64; 3]; 4] = [
     [1.0, 0.35, 0.3],
     [0.35, 1.0, 0.3],
@@ -24,7 +24,7 @@ const TINTS: [[f64; 3]; 4] = [
     [0.6, 0.6, 0.6],
 ];
 
-/// A pass over `target` that clears it to `color`, or only the depth of `depth` to `value`.
+/// Begins a pass over `target` that clears it to `color`, or only the depth of `depth` to `value`.
 fn cleared<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
     target: Option<&wgpu::TextureView>,
@@ -55,7 +55,7 @@ fn cleared<'a>(
     })
 }
 
-/// The tint of a picture whose depth is `depth` everywhere.
+/// Returns the tint of an image whose depth is `depth` everywhere.
 fn tint(gpu: &Gpu, shadow: &DirectionalShadow, camera: &Camera, depth: f32) -> image::RgbaImage {
     let view = DebugView::new(&gpu.device, COLOR).expect("a format for pictures");
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
@@ -91,8 +91,9 @@ fn tint(gpu: &Gpu, shadow: &DirectionalShadow, camera: &Camera, depth: f32) -> i
     readback::rgba8(gpu, &target)
 }
 
-/// On planes at several depths, every pixel has the colour of the first cascade that holds its place in f64. Places within
-/// `1e-3` of themselves of a border may go either way: matrices of f32 err by 1e-6 of a distance of some tens.
+/// On planes at several depths, every pixel has the colour of the first cascade that covers its position in f64.
+/// Positions within `1e-3` of their own magnitude of a border are undecided: matrices of f32 err by 1e-6 of a distance
+/// of some tens.
 #[test]
 fn pixels_have_the_colours_of_their_cascades() {
     let gpu = gpu();
@@ -153,7 +154,7 @@ fn pixels_have_the_colours_of_their_cascades() {
             }
             seen[cascade] += 1;
             for (channel, wanted) in pixel.0.iter().zip(TINTS[cascade]) {
-                // Half a step of 8 bits, and f32's rounding of it.
+                // The tolerance is half a step of 8 bits, and f32's rounding of it.
                 let error = (f64::from(*channel) - wanted * 255.0).abs();
                 assert!(
                     error <= 0.51,
@@ -163,15 +164,16 @@ fn pixels_have_the_colours_of_their_cascades() {
         }
     }
     assert!(seen.iter().all(|count| *count > 200), "{seen:?}");
-    // Nothing drawn, by either convention: the picture stays as it is.
+    // Where nothing is drawn, by either depth convention, the image stays as it is.
     for sky in [0.0, 1.0] {
         let image = tint(gpu, &shadow, &camera, sky);
         assert!(image.pixels().all(|pixel| pixel.0 == [255; 4]), "{sky}");
     }
 }
 
-/// A target that cannot be blended shows maps but no tints; a texture that is no depth is refused. The pass goes on. On Vulkan:
-/// the OpenGL driver has no format that is renderable and cannot be blended.
+/// A target that cannot be blended can show maps but no tints; a texture that is not a depth texture is refused. The
+/// pass can be used further. This runs on Vulkan, since the OpenGL driver has no format that is renderable and cannot
+/// be blended.
 #[test]
 fn what_cannot_be_tinted_is_refused() {
     let gpu = vulkan();

@@ -1,4 +1,4 @@
-//! What `CasterPipeline` refuses: each error provoked, compared as a value, and read as a message.
+//! Tests what `CasterPipeline` refuses: each error is provoked, compared as a value, and read as a message.
 
 use wgpu_shadows::{
     CasterPipeline, caster::CasterPipelineDescriptor, caster::CasterVertex, caster::ModelTransform,
@@ -94,7 +94,7 @@ fn vertex_layouts_that_cannot_be_read() {
         assert_eq!(
             error.to_string(),
             format!(
-                "{field}: offset {offset} + {size} bytes must lie inside the stride of {array_stride} bytes, both multiples of 4"
+                "{field}: offset {offset} + {size} bytes must lie inside the stride of {array_stride} bytes, and offset and stride must be multiples of 4"
             )
         );
     }
@@ -133,7 +133,8 @@ fn topologies_that_are_no_triangles() {
     );
 }
 
-/// What only the device can judge comes back in its own words, from every way in which the engine's WGSL can be wrong.
+/// What only the device can judge is returned with the device's own message, for every way in which the engine's WGSL
+/// can be wrong.
 #[test]
 fn wgsl_that_the_device_refuses() {
     let good = "@vertex fn v(@location(0) p: vec3<f32>) -> @builtin(position) vec4<f32> { return shadow_caster_clip(p); }";
@@ -182,7 +183,7 @@ fn wgsl_that_the_device_refuses() {
     }
 }
 
-/// wgpu itself panics over more bind groups than it has room for, whatever the device's limits.
+/// wgpu itself panics if there are more bind groups than it has room for, whatever the device's limits.
 #[test]
 fn more_bind_groups_than_the_device_takes() {
     let gpu = gpu();
@@ -223,12 +224,14 @@ fn more_bind_groups_than_the_device_takes() {
         assert_eq!(error, wanted);
         assert_eq!(
             error.to_string(),
-            format!("{field} asks for {value}, and the device's max_bind_groups is {maximum}")
+            format!(
+                "{field}: the device's max_bind_groups must be at least {value}, and it is {maximum}"
+            )
         );
     }
 }
 
-/// Any number of vertex buffers and attributes is a pipeline or an error, never a panic.
+/// Any number of vertex buffers and attributes gives a pipeline or an error, never a panic.
 #[test]
 fn more_vertex_buffers_than_the_device_takes() {
     for count in [0, 1, 8, 15, 16, 17, 40, 300] {
@@ -267,7 +270,7 @@ fn more_vertex_buffers_than_the_device_takes() {
     }
 }
 
-/// What rasterizes otherwise than a depth map must be is refused, whatever features the device has.
+/// A primitive state that rasterizes other than a depth map needs is refused, whatever features the device has.
 #[test]
 fn primitives_that_give_no_depth_map() {
     let plain = wgpu::PrimitiveState::default();

@@ -1,4 +1,5 @@
-//! The built-in vertex stage: every position format, both model transforms, strips, and which faces are left out of the map.
+//! Tests the built-in vertex stage: every position format, both model transforms, strips, and which faces are left out
+//! of the map.
 
 use glam::{DVec3, Mat4, Quat, Vec3, Vec4};
 use wgpu::{BufferUsages, VertexFormat};
@@ -17,7 +18,7 @@ use crate::support::scene::Mesh;
 
 const MAP_SIZE: u32 = 64;
 
-/// A caster whose bounds are the unit cube, so that all of them are fitted alike.
+/// Wraps a caster so that its bounds are the unit cube, and all such casters are fitted alike.
 struct InCube<'a>(&'a dyn ShadowCaster);
 
 impl ShadowCaster for InCube<'_> {
@@ -34,7 +35,7 @@ impl ShadowCaster for InCube<'_> {
     }
 }
 
-/// The map of `caster` alone under light along -z, in which the unit cube fills the middle.
+/// Returns the map of `caster` alone under light along -z, in which the unit cube fills the middle.
 fn depths(gpu: &Gpu, caster: &dyn ShadowCaster) -> Vec<f32> {
     let descriptor = DirectionalShadowDescriptor {
         map_size: MAP_SIZE,
@@ -56,7 +57,7 @@ fn drawn(depths: &[f32]) -> usize {
     depths.iter().filter(|depth| **depth > 0.0).count()
 }
 
-/// Fails with a number and not with two maps.
+/// Asserts that two maps are equal; a failure prints a number instead of two maps.
 fn assert_same(found: &[f32], wanted: &[f32], what: &str) {
     let differing = found.iter().zip(wanted).filter(|(a, b)| a != b).count();
     assert_eq!(differing, 0, "{what}: texels differ");
@@ -76,7 +77,7 @@ fn built_in(
     }
 }
 
-/// A caster of three vertices or more, drawn in order.
+/// Returns a caster of three vertices or more, which are drawn in order.
 fn unindexed(
     gpu: &Gpu,
     pipeline: &CasterPipeline,
@@ -98,7 +99,7 @@ fn unindexed(
     .expect("a valid mesh")
 }
 
-/// A component that is 0 or 1, and how many bytes it takes.
+/// Returns the bytes of a component that is 0 or 1.
 fn component(format: VertexFormat, one: bool) -> Vec<u8> {
     use VertexFormat as F;
     let bits = |bits: u32, bytes: usize| {
@@ -119,7 +120,7 @@ fn component(format: VertexFormat, one: bool) -> Vec<u8> {
     }
 }
 
-/// A corner of the unit cube in `format`. A fourth component is 0: it must be ignored.
+/// Returns a corner of the unit cube in `format`. A fourth component is 0: it must be ignored.
 fn encoded(format: VertexFormat, corner: [bool; 3]) -> Vec<u8> {
     if format == VertexFormat::Unorm10_10_10_2 {
         let part = |axis: usize| (u32::from(corner[axis]) * 1023) << (10 * axis);
@@ -134,7 +135,7 @@ fn encoded(format: VertexFormat, corner: [bool; 3]) -> Vec<u8> {
         .collect()
 }
 
-/// Two triangles that touch all of the formats' extremes; the same depths for each format, bit for bit.
+/// Two triangles that touch all of the formats' extremes have the same depths for each format, bit for bit.
 #[test]
 fn every_position_format_draws_the_same() {
     use VertexFormat as F;
@@ -198,7 +199,8 @@ fn vertex_bytes(positions: &[Vec3]) -> Vec<u8> {
     bytemuck::cast_slice(positions).to_vec()
 }
 
-/// A matrix of halves and wholes gives the same bits in the shader as on the CPU; wherever it lies in its buffer.
+/// A matrix of halves and whole numbers gives the same bits in the shader as on the CPU, wherever it lies in its
+/// buffer.
 #[test]
 fn an_instance_matrix_moves_what_identity_leaves() {
     let gpu = gpu();
@@ -245,8 +247,8 @@ fn an_instance_matrix_moves_what_identity_leaves() {
     }
 }
 
-/// Two level quads as one strip with a restart between them, against the same triangles as a list. (wgpu's OpenGL backend does
-/// not restart strips.)
+/// Two level quads as one strip with a restart between them give the same depths as the same triangles as a list.
+/// (wgpu's OpenGL backend does not restart strips.)
 #[test]
 fn strips_restart() {
     let gpu = vulkan();
@@ -296,7 +298,7 @@ fn strips_restart() {
     assert!(drawn(&draw(&strip, &[0, 1, 2, 3, 4, 5, 6, 7])) > drawn(&wanted) + 50);
 }
 
-/// Height along z of what the map holds in its middle, of a box from 0.25 to 0.75.
+/// Returns the height along z of what the middle of the map contains, for a box from 0.25 to 0.75.
 fn middle_height(gpu: &Gpu, caster: &dyn ShadowCaster) -> f32 {
     let depths = depths(gpu, caster);
     // Depth is linear in height; two known sheets calibrate it.
@@ -313,8 +315,8 @@ fn middle() -> usize {
     (MAP_SIZE / 2 * MAP_SIZE + MAP_SIZE / 2) as usize
 }
 
-/// What the light sees first is the upper face; without front faces, the map holds the lower one. A transform that mirrors
-/// changes none of it, whether the mesh was made with it or came to it.
+/// The light sees the upper face first; without front faces, the map contains the lower one. A transform that mirrors
+/// changes neither, whether the mesh was created with it or received it later.
 #[test]
 fn culling_takes_the_faces_it_names() {
     use wgpu::{Face, FrontFace};
@@ -348,7 +350,7 @@ fn culling_takes_the_faces_it_names() {
         let pipeline = pipeline(gpu, &descriptor);
         let assert_height = |caster: &MeshCaster, what: &str| {
             let found = middle_height(gpu, caster);
-            // Depths of about a half over a range of two units: a few ulps of 2^-24.
+            // The tolerance is a few ulps of 2^-24, for depths of about a half over a range of two units.
             let error = (found - height).abs();
             assert!(error < 1e-5, "{cull:?} {front_face:?} {what}: {found}");
         };
@@ -365,7 +367,7 @@ fn culling_takes_the_faces_it_names() {
     }
 }
 
-/// The tests' own meshes face outward, so that what they say of culling is said of closed solids.
+/// The tests' own meshes face outward, so that what the tests find about culling holds for closed solids.
 #[test]
 fn generated_solids_face_outward() {
     let center = Vec3::new(0.5, 2.0, -1.0);

@@ -1,5 +1,5 @@
-//! The other side of the bargain: things that lie on a surface cast onto it, as soon as they are thicker than the gap that the
-//! report names.
+//! Tests contact shadows: objects that lie on a surface cast onto it as soon as they are thicker than the gap that the
+//! report gives.
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
@@ -27,14 +27,14 @@ const BIASES: [Bias; 4] = [
     },
 ];
 
-/// How depths are stored, over what range, and how large map and sheets are.
+/// Describes how depths are stored, over what range, and how large map and sheets are.
 #[derive(Clone, Copy, Debug)]
 struct Setting {
     depth_format: DepthFormat,
-    /// Least depth range of the map.
+    /// Is the least depth range of the map.
     range: f32,
     map_size: u32,
-    /// Half the width of the lower sheet's footprint, seen along the vertical light.
+    /// Is half the width of the lower sheet's footprint, seen along the vertical light.
     half: f64,
 }
 
@@ -45,8 +45,8 @@ const PLAIN: Setting = Setting {
     half: 4.0,
 };
 
-/// Both formats, over short and long ranges. In the longest the step of 16 bits is 1.5 and texels are no finer than
-/// 1/20: there the sheets are larger.
+/// Lists both formats over short and long ranges. In the longest range the step of 16 bits is 1.5, and texels are no
+/// finer than 1/20; there the sheets are larger.
 const SETTINGS: [Setting; 4] = [
     PLAIN,
     Setting {
@@ -67,7 +67,7 @@ const SETTINGS: [Setting; 4] = [
     },
 ];
 
-/// A sheet under a vertical light and a plate parallel to it, `thickness` above along the normal.
+/// Holds a sheet under a vertical light, and a plate parallel to it, `thickness` above it along the normal.
 struct Plate {
     name: String,
     scene: Scene,
@@ -88,7 +88,7 @@ impl Plate {
                 (on_sheet(half, -half) - corner).as_vec3(),
             )
         };
-        // The lift moves the plate sideways, by less than its margin around the points.
+        // The offset moves the plate sideways, by less than its margin around the points.
         assert!(thickness < half / 8.0, "plates are thin: {thickness}");
         let meshes = [
             sheet(half, DVec3::ZERO),
@@ -108,7 +108,8 @@ impl Plate {
         }
     }
 
-    /// Draws the plate on its sheet, and returns the gap that the report names with what the receivers under the plate see.
+    /// Draws the plate on its sheet, and returns the gap that the report gives and the visibilities of the receivers
+    /// under the plate.
     ///
     /// What is covered reaches at least `range` down from the highest point, so the map's depth range is no less.
     fn look(
@@ -135,7 +136,8 @@ impl Plate {
     }
 }
 
-/// What the receivers under a plate of `share` times the reported gap see at worst, at each of the angles.
+/// Returns the largest visibility of the receivers under a plate of `share` times the reported gap, at each of the
+/// angles.
 fn brightest(
     (filter, bias): (Filter, Bias),
     setting: Setting,
@@ -153,7 +155,8 @@ fn brightest(
     let mut shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");
     let probe = SunProbe::new(gpu, &shadow);
     let look = |&angle: &(f64, f64)| {
-        // The window, and with it the gap, is that of the sheet: a first look at any plate tells it.
+        // The light-space bounds, and with them the gap, are those of the sheet, so a first frame with any plate gives
+        // them.
         let first = Plate::new(gpu, setting.half, angle, 1e-3);
         let (gap, _) = first.look(gpu, &mut shadow, &probe, setting.range);
         let plate = Plate::new(gpu, setting.half, angle, gap * share);
@@ -164,8 +167,8 @@ fn brightest(
     angles.iter().map(look).collect()
 }
 
-/// "Above this height a caster on a surface always casts": no receiver under the plate sees light, at any angle, in any depth
-/// range of either format.
+/// "Above this height a caster on a surface always casts": no receiver under the plate is lit, at any angle, in any
+/// depth range of either format.
 #[test]
 fn a_plate_thicker_than_the_reported_gap_always_casts() {
     let mut angles = Vec::new();
@@ -174,7 +177,7 @@ fn a_plate_thicker_than_the_reported_gap_always_casts() {
             angles.push((tilt, azimuth));
         }
     }
-    // Long ranges take large maps, so they see a few of the angles.
+    // Long ranges need large maps, so only a few of the angles are drawn for them.
     let few = [(0.0, 20.0), (30.0, 0.0), (60.0, 45.0), (89.0, 45.0)];
     let mut failures = Vec::new();
     let mut looks = 0;
@@ -208,8 +211,9 @@ fn a_plate_thicker_than_the_reported_gap_always_casts() {
     );
 }
 
-/// The gap is named for the worst angle, grazing and along the diagonal of the texels: there light comes through under a plate
-/// of half the height, so the report does not exaggerate. (Not so for sharpened filters, whose outermost texels do not count.)
+/// The gap is given for the worst angle, grazing and along the diagonal of the texels. There light comes through under
+/// a plate of half the height, so the report does not exaggerate. (That is not so for sharpened filters, whose
+/// outermost texels have no weight.)
 #[test]
 fn a_plate_of_half_the_reported_gap_lets_light_through_at_the_worst_angle() {
     let mut failures = Vec::new();

@@ -1,5 +1,5 @@
-//! Casters that an engine may well hand over and that are not as they should be: they change their mind within a frame, panic,
-//! leave the pass in another state than they found it, or belong to another device.
+//! Tests casters that violate the contract: they return different values within a frame, panic, leave the pass in
+//! another state than they found it, or belong to another device.
 
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -38,27 +38,27 @@ fn frame<'a>(casters: &'a [&'a dyn ShadowCaster]) -> DirectionalFrame<'a> {
     }
 }
 
-/// A slab a unit above the ground, `x` from the middle.
+/// Returns a slab one unit above the ground, `x` from the middle.
 fn slab(gpu: &Gpu, pipeline: &CasterPipeline, x: f32) -> MeshCaster {
     let mesh = Mesh::cuboid(Vec3::new(x - 0.5, 1.0, -0.5), Vec3::new(x + 0.5, 1.1, 0.5));
     mesh.caster(gpu, pipeline, Mat4::IDENTITY)
 }
 
-/// The map of a fresh light.
+/// Returns the map of a new light.
 fn fresh_map(gpu: &Gpu, casters: &[&dyn ShadowCaster]) -> Vec<f32> {
     let mut shadow = sun(gpu);
     record(gpu, &mut shadow, &frame(casters));
     readback::depth_layer(gpu, shadow.maps().texture(), 0)
 }
 
-/// Fails with a number and not with two maps.
+/// Asserts that two maps are equal; a failure prints a number instead of two maps.
 fn assert_same(found: &[f32], wanted: &[f32], what: &str) {
     assert!(wanted.iter().any(|depth| *depth > 0.0), "an empty map");
     let differing = found.iter().zip(wanted).filter(|(a, b)| a != b).count();
     assert_eq!(differing, 0, "{what}: texels differ");
 }
 
-/// A mesh with two pipelines that offers them by turns, of which one is made for maps of another format.
+/// Is a mesh with two pipelines that it returns in turn, one of which is made for maps of another format.
 struct Fickle {
     mesh: MeshCaster,
     other_pipeline: CasterPipeline,
@@ -83,7 +83,7 @@ impl ShadowCaster for Fickle {
     }
 }
 
-/// A pipeline that is another when it is set than when it was checked: the frame is refused, or everything is in the map.
+/// If the pipeline differs between the check and the draw, the frame is refused, or the map contains everything.
 #[test]
 fn casters_that_change_their_mind() {
     let gpu = gpu();
@@ -122,7 +122,7 @@ fn casters_that_change_their_mind() {
     assert!(complete > 0 && refused > 0, "{complete} {refused}");
 }
 
-/// A mesh whose triangles become fewer each time that it is asked, among others that stand still.
+/// Is a mesh that returns fewer triangles at each call, among others that do not change.
 struct Shrinking(MeshCaster, Cell<u32>);
 
 impl ShadowCaster for Shrinking {
@@ -170,7 +170,7 @@ fn triangles_that_shrink_while_they_are_counted() {
     assert!(copied > 0 || gpu.adapter.backend == wgpu::Backend::Gl);
 }
 
-/// A mesh that panics instead of being drawn while it is told to.
+/// Is a mesh that panics instead of being drawn while it is told to.
 struct Panicking(MeshCaster, Cell<bool>);
 
 impl ShadowCaster for Panicking {
@@ -196,7 +196,7 @@ impl ShadowCaster for Panicking {
     }
 }
 
-/// An engine that catches the panic of one caster goes on with shadows that are right in the next frame.
+/// An engine that catches the panic of one caster continues with shadows that are correct in the next frame.
 #[test]
 fn a_caster_that_panics_leaves_nothing_behind() {
     let gpu = gpu();
@@ -221,7 +221,7 @@ fn a_caster_that_panics_leaves_nothing_behind() {
     assert_eq!(report.views[0].status, ViewStatus::Kept);
 }
 
-/// What a caster may do to the pass before it draws.
+/// Lists what a caster may do to the pass before it draws.
 #[derive(Clone, Copy, Debug)]
 enum Habit {
     Viewport,
@@ -232,11 +232,11 @@ enum Habit {
     Bundle,
 }
 
-/// A mesh that leaves the pass otherwise than it found it, behind what it draws.
+/// Is a mesh that draws and leaves the pass in another state than it found it.
 struct Untidy {
     mesh: MeshCaster,
     habit: Habit,
-    /// Bind group of a view that looks elsewhere.
+    /// Is the bind group of a view that looks elsewhere.
     group: wgpu::BindGroup,
     bundle: wgpu::RenderBundle,
     other: CasterPipeline,
@@ -268,7 +268,7 @@ impl ShadowCaster for Untidy {
     }
 }
 
-/// A bind group like the library's own, with a view that sees nothing.
+/// Returns a bind group like the library's own, with a view that sees nothing.
 fn blind_group(gpu: &Gpu) -> wgpu::BindGroup {
     let layout = gpu
         .device
@@ -317,12 +317,12 @@ fn empty_bundle(gpu: &Gpu) -> wgpu::RenderBundle {
     encoder.finish(&wgpu::RenderBundleDescriptor { label: None })
 }
 
-/// The casters after one that changes the pass are drawn as if it had not.
+/// The casters after one that changes the state of the pass are drawn as if it had not.
 #[test]
 fn casters_find_the_pass_as_it_should_be() {
     let gpu = gpu();
     let pipeline = default_pipeline(gpu);
-    // Culls the side of the slabs that is seen.
+    // This pipeline culls the side of the slabs that is seen.
     let other = CasterPipeline::new(
         &gpu.device,
         &CasterPipelineDescriptor {
@@ -358,7 +358,7 @@ fn casters_find_the_pass_as_it_should_be() {
     }
 }
 
-/// A caster whose pipeline is another device's is refused, before anything is recorded.
+/// A caster whose pipeline belongs to another device is refused before anything is recorded.
 #[test]
 fn pipelines_of_another_device() {
     let [here, there] = Gpu::two();
@@ -384,7 +384,8 @@ fn pipelines_of_another_device() {
     assert_eq!(report.views[0].status, ViewStatus::Drawn);
 }
 
-/// Two frames recorded before either is submitted each show the mesh where it was when they were recorded.
+/// If two frames are recorded before either is submitted, each shows the mesh where it was when that frame was
+/// recorded.
 #[test]
 fn two_frames_before_one_submission() {
     let gpu = gpu();

@@ -1,4 +1,5 @@
-//! Six faces of a point light in one pass: the depths of a pass each, bit for bit.
+//! Tests that one multiview pass over the six faces of a point light gives the depths of a pass for each face, bit for
+//! bit.
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{Aabb, report::ViewStatus};
@@ -24,7 +25,7 @@ fn one_pass_gives_the_depths_of_a_pass_each() {
             pair.one.shadow.maps().texture().format(),
             wgpu::TextureFormat::Depth32Float
         );
-        // In the middle, near a wall, and on an axis of a vertex.
+        // The light is in the middle, near a wall, and on an axis through a vertex.
         for light in [
             LIGHT,
             DVec3::new(-3.9, 4.1, 3.7),
@@ -36,8 +37,8 @@ fn one_pass_gives_the_depths_of_a_pass_each() {
     }
 }
 
-/// Sheets, boxes and balls anywhere, the light anywhere, too; every other scene as a camera sees it, with a light that does not
-/// reach all of it.
+/// Sheets, boxes and balls are at random positions, and so is the light; every other scene is seen by a camera, with a
+/// light that does not reach all of it.
 #[test]
 fn random_scenes_have_the_same_depths() {
     const SCENES: u32 = 80;
@@ -75,7 +76,8 @@ fn random_scenes_have_the_same_depths() {
         let ([one, six], _) = pair.compare(&format!("scene {scene}"), light);
         in_one_pass += u32::from(one.passes < six.passes);
     }
-    // All that are seen whole; of the others those in which more than one face is seen and all is within reach.
+    // One pass is expected for all scenes that are completely seen, and for those others in which more than one face is
+    // seen and everything is within reach.
     let wanted = if is_right() { SCENES / 2 } else { 0 };
     assert!(
         in_one_pass >= wanted,
@@ -85,7 +87,7 @@ fn random_scenes_have_the_same_depths() {
     assert!(is_right() || in_one_pass == 0, "{in_one_pass}");
 }
 
-/// What one pass drew is kept as what a pass each drew, and a change in one face costs that face.
+/// What one pass drew is kept like what a pass for each face drew, and a change in one face redraws only that face.
 #[test]
 fn faces_drawn_in_one_pass_are_kept_one_by_one() {
     let mut pair = Pair::new(&furnished());
@@ -94,7 +96,7 @@ fn faces_drawn_in_one_pass_are_kept_one_by_one() {
         assert_eq!(report.passes, 0);
         assert!(report.views.iter().all(|v| v.status == ViewStatus::Kept));
     }
-    // The thing before the wall at +x.
+    // This is the object before the wall at +x.
     pair.each(|stage| {
         let moved = Mat4::from_translation(Vec3::new(2.6, 0.1, 0.0));
         stage.casters[1]
@@ -111,7 +113,8 @@ fn faces_drawn_in_one_pass_are_kept_one_by_one() {
     assert_eq!(reports[0].passes, reports[1].passes);
 }
 
-/// Over frames in which all moves, little moves, and all moves again: one pass, layers of what stands still copied, one pass.
+/// Over frames in which everything moves, little moves, and everything moves again, the light is drawn in one pass, by
+/// copies of static-caster caches, and in one pass again.
 #[test]
 fn one_pass_and_copied_layers_take_turns() {
     let mut pair = Pair::new(&furnished());
@@ -134,12 +137,14 @@ fn one_pass_and_copied_layers_take_turns() {
     assert!(copied > 0);
 }
 
-/// One pass clears the layers of faces that are empty: when they come back they are drawn, though nothing in them has changed.
+/// One pass clears the layers of faces that are empty: when these have casters again they are drawn, though nothing in
+/// them has changed.
 #[test]
 fn a_face_that_was_empty_for_a_frame_comes_back() {
     let mut pair = Pair::new(&furnished());
     pair.record_in_one_pass("all around", LIGHT);
-    // A camera at the light that looks one way, and slightly another the next time: some faces are empty, the others change.
+    // A camera at the light looks one way, and slightly another way the next time: some faces are empty, the others
+    // change.
     pair.each(|stage| {
         let target = LIGHT + DVec3::new(1.0, 0.9, 0.2);
         stage.camera = Some(Camera::modern(LIGHT, target, 1.0, 1.0).view());
@@ -149,12 +154,12 @@ fn a_face_that_was_empty_for_a_frame_comes_back() {
     assert!(one.views.iter().any(|v| v.status == ViewStatus::Empty));
     pair.each(|stage| stage.camera = None);
     let [_, six] = pair.record("all around again", LIGHT);
-    // Else nothing has come back.
+    // Otherwise no face would have had casters again.
     assert!(six.views.iter().any(|v| v.status == ViewStatus::Kept));
 }
 
-/// What lies beyond the reach is not drawn into a face that the near part does not touch. Here a plate does so: from the +z
-/// face, where it is near, it goes on behind what the +x face shows, and one pass would draw it there.
+/// What lies beyond the reach is not drawn into a face that the near part does not touch. Here a plate extends from the
+/// +z face, where it is near, behind what the +x face shows, and one pass would draw it there.
 #[test]
 fn casters_beyond_the_reach_take_a_pass_each() {
     let pairs_of_cubes = [
@@ -170,7 +175,7 @@ fn casters_beyond_the_reach_take_a_pass_each() {
         .map(plain)
         .collect();
     let mut pair = Pair::new(&meshes);
-    // The plate itself is too far away for the camera, so that the faces show no more than the others need.
+    // The plate itself is too far away for the camera, so that the faces cover no more than the others need.
     let camera = Camera::modern(DVec3::ZERO, DVec3::new(1.0, 0.0, 1.0), 2.4, 1.0).view();
     pair.each(|stage| {
         stage.camera = Some(camera.with_max_distance(6.0));
@@ -182,7 +187,7 @@ fn casters_beyond_the_reach_take_a_pass_each() {
     });
     let [one, six] = pair.record("plate", DVec3::ZERO);
     assert_eq!((one.passes, six.passes), (2, 2));
-    // Without it one pass it is, and so it is with a floor that lies under the light as far as one can see.
+    // Without the plate one pass is used, and so it is with a floor that extends under the light as far as one can see.
     pair.each(|stage| stage.casters.truncate(4));
     pair.record_in_one_pass("cubes alone", DVec3::ZERO);
     let floor = Mesh::floor(-2.0, 500.0);

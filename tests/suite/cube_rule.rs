@@ -1,4 +1,4 @@
-//! When the six faces of a point light are drawn in one pass, and what the report says of it.
+//! Tests when the six faces of a point light are drawn in one pass, and what the report says about it.
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
@@ -15,13 +15,13 @@ use crate::support::scene::{Mesh, default_pipeline};
 #[test]
 fn the_report_tells_of_one_pass() {
     if !is_right() {
-        // The other tests assert that such a driver gets a pass each, of which there are reports elsewhere.
+        // On such a driver the other tests assert that each face takes a pass.
         assert_eq!(Stage::new(device(), &furnished()).record(LIGHT).passes, 6);
         return;
     }
     let mut pair = Pair::new(&furnished());
     let [one, six] = pair.record_in_one_pass("furnished", LIGHT);
-    // Seven casters are drawn once, each with its one claimed triangle into all six faces.
+    // Seven casters are drawn once each, with the one triangle that each reports, into all six faces.
     assert_eq!((one.passes, one.draws(), one.triangles()), (1, 7, 42));
     assert_eq!(six.passes, 6);
     assert!(six.draws() > 7 && six.triangles() < 42, "{six:?}");
@@ -34,7 +34,7 @@ fn the_report_tells_of_one_pass() {
     }
 }
 
-/// The rule that `OmniShadow` states, at its border: 4000 triangles a saved pass, 96 a saved draw call.
+/// The rule that `OmniShadow` states is tested at its border: 4000 triangles per saved pass, 96 per saved draw call.
 #[test]
 fn the_rule_is_the_one_that_is_stated() {
     let mut pair = Pair::new(&furnished());
@@ -42,7 +42,7 @@ fn the_rule_is_the_one_that_is_stated() {
     let draws_saved = six.draws() - 7;
     assert!(draws_saved > 0);
     let worth = 4000 * 5 + 96 * draws_saved;
-    // Six casters claim one triangle each, the room the rest; each goes through six faces.
+    // Six casters report one triangle each, and the room the rest; each triangle counts for six faces.
     for (room, passes) in [(worth.div_ceil(6) - 7, 1), (worth.div_ceil(6) - 6, 6)] {
         pair.each(|stage| {
             stage.casters[0].triangles = room;
@@ -54,7 +54,7 @@ fn the_rule_is_the_one_that_is_stated() {
     }
 }
 
-/// Ready-made meshes tell what the rule wants to know.
+/// Ready-made meshes report everything that the rule needs.
 #[test]
 fn meshes_are_drawn_in_one_pass_unless_they_are_dense() {
     let lamp = |mesh: Mesh| {
@@ -80,14 +80,15 @@ fn meshes_are_drawn_in_one_pass_unless_they_are_dense() {
         report.passes
     };
     assert_eq!(lamp(room()), if is_right() { 1 } else { 6 });
-    // 39 600 triangles through six faces are more than five passes and five draw calls are worth.
+    // Drawing 39 600 triangles into six faces costs more than five passes and five draw calls.
     assert_eq!(lamp(Mesh::sphere(Vec3::ZERO, 5.0, 100)), 6);
 }
 
-/// A name, and what is done to the stage.
+/// Is a name and a change of the stage.
 type Change<'a> = (&'a str, &'a dyn Fn(&mut Stage<'static>));
 
-/// A caster that does not tell its triangles, that looks at the view it is drawn into, or with WGSL of the engine's own.
+/// A caster that does not report its triangles, that depends on the view it is drawn into, or that has WGSL of the
+/// engine's own, prevents the single pass.
 #[test]
 fn casters_that_one_pass_cannot_serve_take_a_pass_each() {
     let own_wgsl = |gpu: &Gpu| {

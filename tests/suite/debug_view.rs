@@ -1,5 +1,5 @@
-//! `DebugView`: a grey level is what it says, a depth or a distance; the cross unfolds as it says; what it cannot draw it
-//! refuses.
+//! Tests `DebugView`: a grey level shows a depth or a distance, the cross unfolds as documented, and what cannot be
+//! drawn is refused.
 
 use glam::{DVec3, Vec3};
 use image::RgbaImage;
@@ -38,7 +38,7 @@ fn picture(
     drawn.map(|()| readback::rgba8(gpu, &target))
 }
 
-/// A pixel is grey, opaque, and at most half a step of 8 bits (and f32's rounding of it) from `wanted`.
+/// Asserts that a pixel is grey, opaque, and at most half a step of 8 bits (and f32's rounding of it) from `wanted`.
 fn assert_grey(image: &RgbaImage, [x, y]: [u32; 2], wanted: f64, name: &str) {
     let [r, g, b, a] = image.get_pixel(x, y).0;
     assert!(r == g && g == b && a == 255, "{name} at {x}, {y}");
@@ -85,13 +85,14 @@ fn a_sun_shows_its_depth() {
     }
     let steps = depths.iter().map(|depth| (depth * 255.0) as u32);
     assert!(steps.collect::<std::collections::BTreeSet<_>>().len() > 20);
-    // The second cascade holds nothing.
+    // Nothing casts into the second cascade.
     let empty = picture(gpu(), shadow.maps(), DebugImage::Layer(1), [MAP; 2]);
     let empty = empty.expect("a layer of the map");
     assert!(empty.pixels().all(|pixel| pixel.0 == [255; 4]));
 }
 
-/// A spot over a plane: each pixel shows how far along the ray through its texel the plane lies, as a share of the range.
+/// A spot light shines on a plane: each pixel shows how far along the ray through its texel the plane lies, as a
+/// fraction of the range.
 #[test]
 fn a_spot_shows_distances() {
     let gpu = gpu();
@@ -126,7 +127,7 @@ fn a_spot_shows_distances() {
             let near = anchor_from_clip * DVec3::new(ndc(x), -ndc(y), 1.0).extend(1.0);
             let ray = (near.truncate() / near.w).normalize();
             let distance = place.y / -ray.y;
-            // Where nothing lies, or what lies there is beyond the range, it is white.
+            // Where there is nothing, or only what lies beyond the range, the pixel is white.
             let wanted = if ray.y < -1e-3 {
                 (distance / range).min(1.0)
             } else {
@@ -140,14 +141,15 @@ fn a_spot_shows_distances() {
     assert!(drawn > MAP * MAP / 2, "{drawn}");
 }
 
-/// Walls at six different distances.
+/// Are the distances of six walls, all different.
 const WALLS: [f32; 6] = [3.0, 4.0, 2.5, 3.5, 4.5, 2.0];
 
-/// A room with the light at the origin, and in each face a small ball aside of its middle: in the direction given, and where
-/// the cross must show it, in cells of the four by three from the upper left.
+/// Describes a room with the light at the origin and a small ball in each face, beside its middle: by the direction of
+/// the ball, and by where the cross must show it, in cells of the four by three from the upper left.
 ///
-/// The cross is what one sees who stands at the light and looks along -z, with the other walls folded outward: right is +x,
-/// up is +y, the ceiling's lower border is the wall's upper one, and the wall behind is outermost on the right.
+/// The cross shows what a viewer sees who stands at the light and looks along -z, with the other walls folded outward:
+/// right is +x and up is +y, the ceiling's lower border is the upper border of the wall ahead, and the wall behind is
+/// outermost on the right.
 const BALLS: [(Vec3, [f32; 2]); 6] = [
     (Vec3::new(1.0, 0.5, -0.5), [2.25, 1.25]),
     (Vec3::new(-1.0, 0.5, -0.5), [0.75, 1.25]),
@@ -157,7 +159,7 @@ const BALLS: [(Vec3, [f32; 2]); 6] = [
     (Vec3::new(0.5, 0.5, -1.0), [1.75, 1.25]),
 ];
 
-/// Middles of the cells of +x, -x, +y, -y, +z, -z.
+/// Lists the middles of the cells of +x, -x, +y, -y, +z, -z.
 const CELLS: [[f32; 2]; 6] = [
     [2.5, 1.5],
     [0.5, 1.5],
@@ -179,7 +181,7 @@ fn room(gpu: &Gpu) -> Scene {
     Scene::new(gpu, &meshes)
 }
 
-/// Beyond the walls something receives, so that these are drawn.
+/// Lists receivers beyond the walls, so that the walls are drawn.
 const BEYOND: [Aabb; 1] = [Aabb::new(Vec3::splat(-9.0), Vec3::splat(9.0))];
 
 const LAMP: OmniLight = OmniLight {
@@ -216,14 +218,15 @@ fn a_cross_shows_the_walls_of_a_room() {
     let shadow = lamp(gpu);
     let image = picture(gpu, shadow.maps(), DebugImage::Cross, CROSS).expect("a cube");
     for (wall, cell) in WALLS.into_iter().zip(CELLS) {
-        // Straight ahead; the middle of an odd cell is the middle of a pixel, and half a texel from a texel's own.
+        // The ray points straight ahead: the middle of an odd cell is the middle of a pixel, and half a texel from that
+        // of a texel.
         assert_grey(&image, pixel(cell), f64::from(wall / RANGE), "wall");
     }
     for (direction, cell) in BALLS {
-        // A ball's front, and opposite to it in the cell the wall, farther than any ball.
+        // The cell shows the ball's front, and at the opposite position the wall, which is farther than any ball.
         let front = (direction * 1.2).length() - 0.15;
         let grey = f32::from(image.get_pixel(pixel(cell)[0], pixel(cell)[1]).0[0]) / 255.0;
-        // A pixel aside of the ball's middle it is a little farther: at most a fifth of the radius.
+        // One pixel from the ball's middle the surface is a little farther away: by at most a fifth of the radius.
         let distance = grey * RANGE;
         assert!(
             (distance - front).abs() < 0.03 + RANGE / 255.0,
@@ -235,14 +238,14 @@ fn a_cross_shows_the_walls_of_a_room() {
         let grey = f32::from(image.get_pixel(x, y).0[0]) / 255.0;
         assert!(grey * RANGE > 1.95, "{direction}: {}", grey * RANGE);
     }
-    // Where the cross has no cell it is grey.
+    // Outside the cross the image is grey.
     for cell in [[0.5, 0.5], [2.5, 0.5], [3.5, 2.5]] {
         let [x, y] = pixel(cell);
         assert!([127, 128].contains(&image.get_pixel(x, y).0[0]));
     }
 }
 
-/// A pool shows each of its lights as the light alone.
+/// A pool shows each of its lights as that light alone is shown.
 #[test]
 fn a_pool_shows_one_of_its_lights() {
     let gpu = gpu();
@@ -273,7 +276,7 @@ fn a_pool_shows_one_of_its_lights() {
     submitted(gpu, |encoder| pool.record_frame(encoder, &frame)).expect("a valid frame");
     let draw = |what| picture(gpu, pool.maps(), what, CROSS);
     assert!(draw(DebugImage::PoolCross(1)).expect("a light") == wanted);
-    // A slot without a light is white all over its cells.
+    // All cells of a slot without a light are white.
     let empty = draw(DebugImage::PoolCross(0)).expect("a slot");
     assert!(
         CELLS

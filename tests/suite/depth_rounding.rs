@@ -1,5 +1,5 @@
-//! What a map holds of a plane lies as near to the plane's own depth as the uniforms say: the errors that the bias leaves room
-//! for are those that the device makes.
+//! Tests that the depths that a map contains of a plane are as near to the plane's own as the uniforms state: the
+//! errors that the bias allows for are those that the device makes.
 
 use glam::{DMat4, DVec2, DVec3, Mat4, Vec3};
 use wgpu_shadows::{
@@ -17,7 +17,7 @@ use crate::support::view_member::member;
 
 const MAP_SIZE: u32 = 256;
 
-/// A sheet near the origin at `tilt` degrees to the light, covered with all that lies `range` around.
+/// Is a sheet near the origin at `tilt` degrees to the light, with coverage of everything that lies `range` around it.
 struct Sheet {
     scene: Scene,
     light: DVec3,
@@ -31,7 +31,7 @@ impl Sheet {
         let v = normal.cross(u);
         let side = u.rotate_axis(normal, random.range(0.0, 6.2));
         let toward_light = normal * tilt.to_radians().cos() + side * tilt.to_radians().sin();
-        // Large enough to fill much of the map, at a place that is not round.
+        // The sheet fills much of the map, at a position that is not a round number.
         let half = range * 0.5;
         let center = random.direction() * (range * 0.11);
         let corner = center - (u + v) * half;
@@ -48,7 +48,8 @@ impl Sheet {
         }
     }
 
-    /// The largest difference of a stored depth from the plane's, as a share of what the uniforms allow for it.
+    /// Returns the largest difference of a stored depth from the plane's, as a fraction of what the uniforms allow for
+    /// it.
     fn worst(&self, shadow: &mut DirectionalShadow) -> (f64, usize) {
         let gpu = gpu();
         let frame = DirectionalFrame {
@@ -82,9 +83,9 @@ impl Sheet {
     }
 }
 
-/// In ndc a depth errs by 6u of the range, one step of a 16-bit format, and the plane's slope over the rounding of texel
-/// coordinates and the snapping of vertices: no texel of any sheet by more, and some by a tenth of that at least, so that the
-/// bound is one that is needed.
+/// In ndc a depth errs by 6u of the range, by one step of a 16-bit format, and by the plane's slope over the rounding
+/// of texel coordinates and the snapping of vertices. No texel of any sheet errs by more, and some err by a tenth of
+/// that at least, so that the bound is needed.
 #[test]
 fn stored_depths_err_by_no_more_than_the_uniforms_say() {
     let mut words = Vec::new();

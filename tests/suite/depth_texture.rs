@@ -1,4 +1,4 @@
-//! The depth texture as an engine gets it: what the getters say of it, and that it can be copied.
+//! Tests the depth texture that an engine receives: what its getters return, and that it can be copied.
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{Aabb, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor};
@@ -9,7 +9,8 @@ use crate::support::probe::record;
 use crate::support::readback;
 use crate::support::scene::{Mesh, Scene};
 
-/// A copy of the layer and a shader's look at it agree bit for bit. (wgpu's OpenGL backend does not copy depth textures.)
+/// A copy of the layer and a shader's samples of it agree bit for bit. (wgpu's OpenGL backend does not copy depth
+/// textures.)
 #[test]
 fn the_texture_can_be_copied() {
     const SIZE: u32 = 64;

@@ -1,5 +1,5 @@
-//! Devices made with limits far below the defaults: everything works, or the error names the limit. The device's own words
-//! are no answer.
+//! Tests devices that were created with limits far below the defaults: everything works, or the error names the limit.
+//! The device's own error is never returned.
 
 use std::fmt::Debug;
 
@@ -29,7 +29,7 @@ fn device(lower: impl FnOnce(&mut wgpu::Limits)) -> Gpu {
     })
 }
 
-/// The value, or none for an error of the library's own. Panics with the device's words.
+/// Returns the value, or `None` for an error of the library's own. Panics with the message of a device's error.
 fn answered<T, E: Debug>(result: Result<T, E>, what: &str, refused: &mut usize) -> Option<T> {
     match result {
         Ok(value) => Some(value),
@@ -61,7 +61,7 @@ fn pool_descriptor(capacity: u32) -> PoolDescriptor<'static> {
     }
 }
 
-/// Pipelines of the built-in stages, and one of an engine's own with three buffers and two groups.
+/// Creates pipelines of the built-in stages, and one of an engine's own with three buffers and two groups.
 fn pipelines(gpu: &Gpu, what: &str, refused: &mut usize) -> Option<CasterPipeline> {
     let built_in = |model| {
         let descriptor = CasterPipelineDescriptor {
@@ -103,7 +103,8 @@ fn pipelines(gpu: &Gpu, what: &str, refused: &mut usize) -> Option<CasterPipelin
     answered(built_in(ModelTransform::INSTANCE_MATRIX), what, refused)
 }
 
-/// Everything that the library makes, and frames and pictures where it could be made. Returns the number of refusals.
+/// Creates everything that the library has, and records frames and draws images where it could be created. Returns the
+/// number of refusals.
 fn all(gpu: &Gpu, what: &str) -> usize {
     let device = &gpu.device;
     let mut refused = 0;
@@ -183,7 +184,7 @@ fn all(gpu: &Gpu, what: &str) -> usize {
 
 type Lower = fn(&mut wgpu::Limits, u32);
 
-/// Each limit that an object of the library could exceed, with the values to lower it to.
+/// Lists each limit that an object of the library could exceed, with the values to lower it to.
 #[rustfmt::skip]
 const LIMITS: [(&str, &[u32], Lower); 17] = [
     ("max_texture_dimension_2d", &[4, 7, 8], |limits, value| limits.max_texture_dimension_2d = value),
@@ -213,7 +214,7 @@ fn every_low_limit_is_kept_or_named() {
             let gpu = device(|limits| lower(limits, value));
             refused.push(all(&gpu, &format!("{name} = {value}")));
         }
-        // One variable between stages is all that the debug view has, and no device has fewer.
+        // The debug view needs one variable between stages, and no device has fewer.
         let lowest_serves = name == "max_inter_stage_shader_variables";
         assert_eq!(refused[0] == 0, lowest_serves, "{name}: {refused:?}");
         assert!(
@@ -221,13 +222,13 @@ fn every_low_limit_is_kept_or_named() {
             "{name}: {refused:?}"
         );
     }
-    // Alignment is the one limit that is worse the larger it is.
+    // The alignment is the one limit that is worse the larger it is.
     let gpu = device(|limits| limits.min_uniform_buffer_offset_alignment = 1024);
     assert_eq!(all(&gpu, "alignment 1024"), 0);
     assert_eq!(all(&device(|_| ()), "the defaults"), 0);
 }
 
-/// An array of one layer, or of six, has one layer more on OpenGL.
+/// Returns the number of layers that are allocated: on OpenGL an array of one layer, or of six, has one layer more.
 fn allocated(gpu: &Gpu, layers: u64) -> u64 {
     let opengl = gpu.adapter.backend == wgpu::Backend::Gl;
     layers + u64::from(opengl && (layers == 1 || layers.is_multiple_of(6)))
@@ -248,7 +249,7 @@ fn lights_with_more_layers_than_the_device_has() {
     assert_eq!(error, over(field, 5));
     assert_eq!(
         error.to_string(),
-        format!("{field} asks for 5, and the device's {limit} is 4")
+        format!("{field}: the device's {limit} must be at least 5, and it is 4")
     );
     DirectionalShadow::new(&gpu.device, &sun_descriptor(4)).expect("four layers");
     let error = OmniShadow::new(&gpu.device, &Default::default()).expect_err("six layers");
@@ -261,7 +262,7 @@ fn lights_with_more_layers_than_the_device_has() {
     assert_eq!(error, over(field, allocated(&gpu, 12)));
     let error = SpotShadowPool::new(&gpu.device, &pool_descriptor(5)).expect_err("five layers");
     assert_eq!(error, over(field, 5));
-    // The product of views and slots does not wrap.
+    // The product of views and slots does not wrap around.
     let error = OmniShadowPool::new(&gpu.device, &pool_descriptor(u32::MAX)).expect_err("no end");
     assert_eq!(error, over(field, allocated(&gpu, 6 * u64::from(u32::MAX))));
 }
@@ -297,9 +298,9 @@ fn uniforms_larger_than_the_device_binds() {
     );
     assert_eq!(
         error.to_string(),
-        format!("DebugView needs {value}, and the device's {limit} is {maximum}")
+        format!("DebugView: the device's {limit} must be at least {value}, and it is {maximum}")
     );
-    // A light of a device that binds more.
+    // This light belongs to a device that binds larger uniforms.
     let other = device(|_| ());
     let sun = DirectionalShadow::new(&other.device, &sun_descriptor(5)).expect("five views");
     let descriptor = ShadowBindingsDescriptor {
@@ -335,6 +336,6 @@ fn vertices_that_the_device_does_not_fetch() {
     );
     assert_eq!(
         error.to_string(),
-        format!("{field} asks for 5, and the device's max_vertex_attributes is 4")
+        format!("{field}: the device's max_vertex_attributes must be at least 5, and it is 4")
     );
 }

@@ -1,5 +1,5 @@
-//! Devices that are gone, full, or not the one that a light was made on: typed errors at every constructor and every call, never
-//! a panic.
+//! Tests devices that are lost, out of memory, or not the one on which a light was made: every constructor and every
+//! call returns a typed error and never panics.
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
@@ -24,7 +24,7 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
 const COVER: Aabb = Aabb::new(Vec3::NEG_ONE, Vec3::ONE);
 
-/// One of everything that is made on a device.
+/// Holds one of everything that is made on a device.
 struct Everything {
     sun: DirectionalShadow,
     spot: SpotShadow,
@@ -87,7 +87,7 @@ impl Everything {
         }
     }
 
-    /// A frame of every light on `gpu`, or why there is none.
+    /// Records a frame of every light on `gpu`, and returns the error of each that has none.
     fn record(&mut self, gpu: &Gpu, casters: &[&dyn ShadowCaster]) -> Vec<Option<ShadowError>> {
         let (origin, receivers) = (DVec3::ZERO, &[COVER][..]);
         let mut encoder = gpu.encoder();
@@ -162,7 +162,7 @@ fn pool_frame<'a, L>(
     }
 }
 
-/// Once the device is gone, nothing is made on it and no frame is recorded, and each call says so.
+/// Once the device is lost, nothing is created on it and no frame is recorded, and each call returns that error.
 #[test]
 fn a_lost_device_makes_nothing() {
     let lost = Gpu::new(GpuRequest::default());
@@ -257,8 +257,8 @@ fn a_lost_device_makes_nothing() {
     );
 }
 
-/// A frame that draws with the uniforms of the one before uploads nothing, and is an error all the same; one that keeps its map
-/// asks nothing of the device.
+/// A frame that draws with the uniforms of the one before uploads nothing, and is an error all the same; one that keeps
+/// its map makes no call to the device.
 #[test]
 fn a_lost_device_draws_nothing() {
     let lost = Gpu::new(GpuRequest::default());
@@ -294,7 +294,8 @@ fn a_lost_device_draws_nothing() {
     assert_eq!(status(&caster), Err(error));
 }
 
-/// A light of another device is refused before anything is made or drawn, and frames are recorded on the light's own.
+/// A light of another device is refused before anything is made or drawn, and frames are recorded on the light's own
+/// device.
 #[test]
 fn a_light_of_another_device_is_refused() {
     let [here, there] = Gpu::two();
@@ -318,7 +319,7 @@ fn a_light_of_another_device_is_refused() {
         assert_eq!(error, Err(DebugViewError::OtherDevice));
     }
     there.submit(encoder);
-    // Frames are recorded on the light's own device, whatever else there is.
+    // Frames are recorded on the light's own device, whatever other devices exist.
     assert_eq!(all.record(&here, &[]), [const { None }; 5]);
     table::record(
         "a light of another device",
@@ -327,8 +328,8 @@ fn a_light_of_another_device_is_refused() {
     );
 }
 
-/// More than a software adapter addresses: the limits allow each side and the layers, and memory does not hold them. (OpenGL
-/// does not say when it runs out.)
+/// The map is larger than a software adapter can address: the limits allow each side and the layers, but the memory
+/// does not suffice. (OpenGL does not report when it runs out.)
 #[test]
 fn maps_larger_than_the_memory() {
     let limits = wgpu::Limits {

@@ -1,9 +1,10 @@
-//! The direction-space filters of point lights on the device, against a twin in f64 that is written here from their
-//! description: 64 or 20 nearest lookups in the read-back faces, along the receiver's direction plus an offset.
+//! Tests the direction-space filters of point lights on the device against a reference in f64 that is written here from
+//! their description: 64 or 20 nearest comparisons in the faces read back, along the receiver's direction plus an
+//! offset.
 //!
-//! A single lookup may fall either way where f32 cannot tell: the twin asks for the receiver and the corners of its rounding
-//! band, on every face that the sample may lie on, and the device's mean must lie between the means of the least and of the
-//! greatest answers.
+//! A single comparison is undecided where f32 does not resolve it. The reference evaluates the receiver and the corners
+//! of its rounding band, on every face on which the sample may lie, and the device's mean must lie between the means of
+//! the least and of the greatest results.
 
 use glam::{DVec2, DVec3, Vec3};
 use wgpu_shadows::reference::{self, DepthLayer, Receiver};
@@ -24,10 +25,10 @@ use crate::support::view_member::member;
 
 const MAP_SIZE: u32 = 120;
 const LIGHT: DVec3 = DVec3::new(0.25, 0.5, -0.125);
-/// Less than the distance to the farthest corner, so that it is the light's reach.
+/// Is less than the distance to the farthest corner, so that it is the light's reach.
 const RANGE: f32 = 9.0;
 
-/// Four by four by four places in a cube of half side 1.
+/// Returns four by four by four points in a cube of half side 1.
 fn grid() -> Vec<DVec3> {
     let steps = [-0.75, -0.25, 0.25, 0.75];
     let mut offsets = Vec::new();
@@ -41,7 +42,7 @@ fn grid() -> Vec<DVec3> {
     offsets
 }
 
-/// The corners of a cube and the middles of its edges.
+/// Returns the corners of a cube and the middles of its edges.
 fn star() -> Vec<DVec3> {
     let mut offsets = Vec::new();
     for x in -1..=1 {
@@ -56,7 +57,7 @@ fn star() -> Vec<DVec3> {
     offsets
 }
 
-struct Twin {
+struct Reference {
     uniforms: Vec<ShadowViewUniform>,
     faces: Vec<Vec<f32>>,
     filter: Filter,
@@ -64,8 +65,9 @@ struct Twin {
     eye: Option<DVec3>,
 }
 
-impl Twin {
-    /// Faces on which a place may lie, as far as f32 can tell: the largest component, and those that equal it nearly.
+impl Reference {
+    /// Returns the faces on which a position may lie, as far as f32 resolves it: that of the largest component, and
+    /// those of components nearly equal to it.
     fn faces(from_light: DVec3) -> impl Iterator<Item = usize> {
         let reach = from_light.abs();
         (0..3)
@@ -73,7 +75,7 @@ impl Twin {
             .map(move |axis| 2 * axis + usize::from(from_light[axis] < 0.0))
     }
 
-    /// Means of the least and the greatest answers of the samples.
+    /// Returns the means of the least and of the greatest results of the samples.
     fn range(&self, position: DVec3, normal: DVec3) -> (f64, f64) {
         let from_light = position - LIGHT;
         let (offsets, radius) = match self.filter {
@@ -113,9 +115,9 @@ impl Twin {
             let Some(band) = band(uniform, self.filter, self.bias, at, normal, &receiver) else {
                 return (0.0, 1.0);
             };
-            // The band is that of a place known to 2u of its reach, 8u with the matrix. Here the place has come through a
-            // normalisation (4u) and a quotient of two dot products, whose relative error is 6u over the cosine of incidence:
-            // 34u for the least cosine of this test, 0.2. Six bands hold both.
+            // The band is that of a position known to 2u of its reach, 8u with the matrix. Here the position results
+            // from a normalisation (4u) and a quotient of two dot products, whose relative error is 6u over the cosine
+            // of incidence: 34u for the least cosine of this test, 0.2. Six bands include both.
             let band = Band {
                 texel: band.texel * 6.0,
                 depth: band.depth * 6.0,
@@ -161,7 +163,7 @@ fn compare(filter: Filter, bias: Bias, with_camera: bool) {
     };
     let mut shadow = OmniShadow::new(&gpu.device, &descriptor).expect("a valid lamp");
     let ask = Ask::light(gpu, shadow.maps());
-    // So wide that every face is seen; it stands for the viewer's place alone.
+    // The image is so wide that every face is seen; only the camera's position matters.
     let eye = DVec3::new(3.5, 3.0, 3.5);
     let camera = Camera::modern(eye, DVec3::new(-1.0, -1.0, -1.0), 2.6, 1.0).view();
     let frame = OmniFrame {
@@ -176,19 +178,19 @@ fn compare(filter: Filter, bias: Bias, with_camera: bool) {
     };
     let report = record_omni(gpu, &mut shadow, &frame).expect("a valid frame");
     assert_eq!(report.passes, 6);
-    // The eye as the uniform has it.
-    let viewer: [f32; 4] = member(&shadow.maps().view_uniforms()[0], "viewer");
-    let viewer = Vec3::from_slice(&viewer[..3]).as_dvec3();
-    let twin = Twin {
+    // This is the camera's position as the uniform has it.
+    let camera: [f32; 4] = member(&shadow.maps().view_uniforms()[0], "camera");
+    let camera = Vec3::from_slice(&camera[..3]).as_dvec3();
+    let reference = Reference {
         uniforms: shadow.maps().view_uniforms().to_vec(),
         faces: (0..6)
             .map(|layer| readback::depth_layer(gpu, shadow.maps().texture(), layer))
             .collect(),
         filter,
         bias,
-        eye: with_camera.then_some(viewer),
+        eye: with_camera.then_some(camera),
     };
-    assert!(!with_camera || viewer.distance(eye) < 1e-4, "{viewer}");
+    assert!(!with_camera || camera.distance(eye) < 1e-4, "{camera}");
     let mut random = Random::new(59);
     let mut points = Vec::new();
     while points.len() < 3000 {
@@ -202,15 +204,16 @@ fn compare(filter: Filter, bias: Bias, with_camera: bool) {
     let (mut undecided, mut partial) = (0, 0);
     for (point, seen) in points.iter().zip(ask.points(gpu, &points)) {
         let wide = |v| Vec3::from_array(v).as_dvec3();
-        let (low, high) = twin.range(wide(point.position), wide(point.normal));
-        // Whole numbers up to 64 are exact; what remains is one division.
+        let (low, high) = reference.range(wide(point.position), wide(point.normal));
+        // Whole numbers up to 64 are exact; one division remains.
         let seen = f64::from(seen);
         let context = format!("{filter:?} {bias:?} {point:?}: {seen} outside {low}..{high}");
         assert!((low - U..=high + U).contains(&seen), "{context}");
         undecided += usize::from(high > low);
         partial += usize::from(low == high && low > 0.0 && high < 1.0);
     }
-    // A point is undecided where any of its samples is: of 64 samples, one in some hundred straddles a texel's border.
+    // A point is undecided if any of its samples is: of 64 samples, one in some hundred straddles the border of a
+    // texel.
     assert!(undecided < points.len() / 5, "{undecided} undecided");
     assert!(partial > points.len() / 50, "{partial} partly lit");
 }
@@ -226,11 +229,11 @@ fn the_star_is_the_mean_of_20() {
 }
 
 #[test]
-fn the_star_widens_away_from_the_viewer() {
+fn the_star_widens_away_from_the_camera() {
     compare(Filter::DirectionStar { radius: 0.06 }, Bias::Auto, true);
 }
 
-/// With the textbook's own bias the samples lie at the receiver's distance.
+/// With the manual bias the samples lie at the receiver's distance.
 #[test]
 fn the_textbook_grid_is_the_mean_of_64() {
     let bias = Bias::Manual {

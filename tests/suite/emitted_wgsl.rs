@@ -1,4 +1,4 @@
-//! What `ShadowBindings` emits, for every kind of light, every filter and every bias, alone and in company.
+//! Tests what `ShadowBindings` emits for every kind of light, every filter and every bias, alone and combined.
 
 use wgpu_shadows::{Bias, Filter, ShadowBindings, ShadowBindingsDescriptor, ShadowMaps};
 
@@ -15,13 +15,13 @@ const BIASES: [Bias; 3] = [
     },
 ];
 
-/// Filters that every kind of light takes beside [`Filter::PLANAR`].
+/// Lists the filters that every kind of light accepts in addition to [`Filter::PLANAR`].
 const SOFT: [Filter; 2] = [
     Filter::Pcss { light_size: 0.01 },
     Filter::PcssRotated { light_size: 0.01 },
 ];
 
-/// Filters that only point lights take.
+/// Lists the filters that only point lights accept.
 const DIRECTIONS: [Filter; 2] = [
     Filter::DirectionGrid { radius: 0.1 },
     Filter::DirectionStar { radius: 0.1 },
@@ -33,7 +33,8 @@ struct Named {
     light: Box<dyn Light>,
 }
 
-/// A light of a kind for every filter and bias that it takes. Maps are one texel: only the WGSL is of interest.
+/// Returns a light of a kind for every filter and bias that it accepts. Maps are one texel, since only the WGSL is of
+/// interest.
 fn every_way(kind: Kind) -> Vec<Named> {
     let directions: &[Filter] = if kind.has_cube() { &DIRECTIONS } else { &[] };
     let filters = [Filter::PLANAR, &SOFT, directions].concat();
@@ -59,8 +60,9 @@ fn emitted(group: u32, lights: &[(&str, &ShadowMaps)]) -> String {
     bindings.wgsl().to_owned()
 }
 
-/// naga and WGSL's grammar accept the text, all its bindings are in `group` at 0, 1, 2 and so on, and there is a function for
-/// each light that takes two vectors, after an index where the light is a pool's, and returns a float.
+/// Checks that naga and WGSL's grammar accept the text, that all its bindings are in `group` at 0, 1, 2 and so on, and
+/// that there is a function for each light that takes two vectors, after an index where the light is a pool's, and
+/// returns a float.
 fn check(text: &str, group: u32, lights: &[(&str, Kind)]) -> Result<(), String> {
     let module = wgsl::validate(text)?;
     let mut bindings = Vec::new();
@@ -137,7 +139,7 @@ fn one_light_validates_in_every_group() {
     report(&failures);
 }
 
-/// Shared modules appear once, samplers are shared, and names do not collide, for every two lights of different kinds.
+/// For every two lights of different kinds, shared modules appear once, samplers are shared, and names do not collide.
 #[test]
 fn two_lights_validate() {
     let [_, _, sun, others @ ..] = Kind::ALL;

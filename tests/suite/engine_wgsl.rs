@@ -1,4 +1,4 @@
-//! Casters with the engine's own WGSL and bind groups: a leaf card with holes, and a flag that moves.
+//! Tests casters with the engine's own WGSL and bind groups: a leaf card with holes, and a flag that moves.
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu::util::DeviceExt;
@@ -14,7 +14,7 @@ use crate::support::probe::{Point, SunProbe, record};
 use crate::support::scene::{Mesh, default_pipeline};
 use crate::support::table;
 
-/// A square card a unit above the ground; texture coordinates are its x and z from 0 to 1.
+/// Draws a square card one unit above the ground; its texture coordinates are x and z from 0 to 1.
 const LEAF: &str = "
 @group(1) @binding(0) var leaf: texture_2d<f32>;
 
@@ -37,7 +37,7 @@ fn fragment(vertex: Vertex) {
 }
 ";
 
-/// The same card, blown aside by a wind.
+/// Draws the same card, displaced by wind.
 const FLAG: &str = "
 @group(1) @binding(0) var<uniform> wind: vec4<f32>;
 
@@ -47,7 +47,7 @@ fn vertex(@location(0) position: vec3<f32>) -> @builtin(position) vec4<f32> {
 }
 ";
 
-/// A caster as an engine writes it: buffers, one bind group, and a version that it counts itself.
+/// Is a caster as an engine writes it: buffers, one bind group, and a version that it counts itself.
 struct Card {
     pipeline: CasterPipeline,
     vertices: wgpu::Buffer,
@@ -147,7 +147,7 @@ impl ShadowCaster for Card {
     }
 }
 
-/// A sun from straight above over a field of five by five units.
+/// Holds a sun that shines straight down on a field of five by five units.
 struct Field {
     shadow: DirectionalShadow,
     probe: SunProbe,
@@ -180,7 +180,7 @@ impl Field {
         record(gpu, &mut self.shadow, &frame).views[0].status
     }
 
-    /// Visibility on the ground.
+    /// Returns the visibilities on the ground.
     fn ask(&self, gpu: &Gpu, places: &[(f32, f32)]) -> Vec<f32> {
         let points: Vec<_> = places
             .iter()
@@ -229,7 +229,7 @@ fn a_masked_leaf_has_holes_in_its_shadow() {
         },
         wgpu::BindingResource::TextureView(&texture.create_view(&Default::default())),
     );
-    // Between two solid casters, whose pipeline and buffers the leaf's must not disturb.
+    // The leaf is drawn between two solid casters, whose pipeline and buffers it must not disturb.
     let pipeline = default_pipeline(gpu);
     let solid = |x: f32| {
         let mesh = Mesh::cuboid(Vec3::new(x, 1.0, 2.0), Vec3::new(x + 1.0, 1.1, 3.0));
@@ -276,7 +276,7 @@ fn a_displaced_flag_moves_its_shadow() {
         },
         wind.as_entire_binding(),
     );
-    // Bounds hold the flag wherever the wind takes it.
+    // The bounds contain the flag however the wind moves it.
     flag.bounds.max += Vec3::splat(2.0);
     let mut field = Field::new(gpu);
     assert_eq!(field.draw(gpu, &[&flag]), ViewStatus::Drawn);
@@ -291,7 +291,7 @@ fn a_displaced_flag_moves_its_shadow() {
     near(field.ask(gpu, &places), [0.0, 1.0]);
     gpu.queue
         .write_buffer(&wind, 0, bytemuck::bytes_of(&[2.0_f32, 0.5, 1.0, 0.0]));
-    // The engine has not counted its version up: the map is kept, as it asked.
+    // The engine has not changed the version, and so the map is kept.
     assert_eq!(field.draw(gpu, &[&flag]), ViewStatus::Kept);
     near(field.ask(gpu, &places), [0.0, 1.0]);
     flag.version += 1;

@@ -1,5 +1,5 @@
-//! What a sun refuses at construction: each error provoked, compared as a value, and read as a message that names field, rule
-//! and value.
+//! Tests what a sun refuses at construction: each error is provoked, compared as a value, and read as a message that
+//! names field, rule and value.
 
 use wgpu_shadows::{
     Bias, CascadeSplit, DirectionalShadow, DirectionalShadowDescriptor, Filter, ShadowError,
@@ -31,8 +31,8 @@ fn descriptors_out_of_range() {
     };
     let cascades = |cascades| DirectionalShadowDescriptor { cascades, ..good };
     let size = |map_size| DirectionalShadowDescriptor { map_size, ..good };
-    let filter_rule = "of a finite sharpness of at least 1";
-    let bias_rule = "of finite constant and slope of at least 0";
+    let filter_rule = "a filter with a finite sharpness of at least 1";
+    let bias_rule = "a bias with a finite constant and slope of at least 0";
     let cases = [
         (cascades(0), "cascades", "in 1..=8", "0"),
         (cascades(9), "cascades", "in 1..=8", "9"),
@@ -52,8 +52,13 @@ fn descriptors_out_of_range() {
             bias_rule,
             "constant 0, slope NaN",
         ),
-        (split(1.5), "split", "of a lambda in 0..=1", "1.5"),
-        (split(f32::NAN), "split", "of a lambda in 0..=1", "NaN"),
+        (split(1.5), "split", "a split with a lambda in 0..=1", "1.5"),
+        (
+            split(f32::NAN),
+            "split",
+            "a split with a lambda in 0..=1",
+            "NaN",
+        ),
     ];
     assert_eq!(sun(gpu(), &good), Ok(()));
     for (descriptor, field, rule, value) in cases {
@@ -85,7 +90,7 @@ fn maps_larger_than_the_device_allows() {
     assert_eq!(
         error.to_string(),
         format!(
-            "DirectionalShadowDescriptor::map_size asks for {}, and the device's max_texture_dimension_2d is {maximum}",
+            "DirectionalShadowDescriptor::map_size: the device's max_texture_dimension_2d must be at least {}, and it is {maximum}",
             maximum + 1
         )
     );

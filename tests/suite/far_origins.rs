@@ -1,5 +1,5 @@
-//! Origins of any finite magnitude: a frame is right, or refused. Nothing is drawn through a matrix that is no number, and
-//! nothing is reported empty that is not.
+//! Tests origins of any finite magnitude: a frame is correct or is refused. Nothing is drawn with a matrix that is not
+//! finite, and no view is reported as empty that is not.
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
@@ -17,7 +17,7 @@ use crate::support::report::assert_whole;
 use crate::support::scene::{Mesh, Scene, Triangle, default_pipeline, occluded};
 use crate::support::view_member::member;
 
-/// A slab close above the floor, both in units of `unit`.
+/// Describe a slab close above the floor, in units of `unit`.
 const SLAB_HALF: f32 = 2.5;
 const SLAB_LOW: f32 = 0.4;
 const FLOOR_HALF: f32 = 4.0;
@@ -30,7 +30,7 @@ fn meshes(unit: f32) -> [Mesh; 2] {
     [slab, Mesh::floor(0.0, FLOOR_HALF * unit)]
 }
 
-/// All magnitudes up to where f64 steps over the scene, and some of every size beyond.
+/// Returns origins of all magnitudes up to where the steps of f64 exceed the scene, and some of every size beyond.
 fn origins() -> Vec<DVec3> {
     let axes = [
         DVec3::X,
@@ -74,7 +74,7 @@ fn assert_finite<'a>(
     }
 }
 
-/// Places of the floor whose truth is the same for `margin` around.
+/// Returns the points of the floor where the ray-traced truth is the same for `margin` around.
 fn settled(
     triangles: &[Triangle],
     unit: f64,
@@ -106,7 +106,7 @@ fn assert_right(wanted: &[(DVec3, bool)], seen: &[f32], what: &str) {
     );
     for ((place, dark), seen) in wanted.iter().zip(seen) {
         let right = if *dark { 0.0 } else { 1.0 };
-        // A sum of at most 64 weights in f32.
+        // The tolerance covers a sum of at most 64 weights in f32.
         assert!(
             (seen - right).abs() < 1e-4,
             "{what}: {seen} at {place}, dark: {dark}"
@@ -121,7 +121,7 @@ fn points(wanted: &[(DVec3, bool)]) -> Vec<Point> {
         .collect()
 }
 
-/// A sun over the scene of one unit, with the coverage that a test asks for.
+/// Describes a sun over the scene of one unit, with the coverage that a test needs.
 struct Case {
     unit: f32,
     direction: Vec3,
@@ -177,7 +177,7 @@ impl Case {
     }
 }
 
-/// Longer sides of the finest and of the coarsest view's texels.
+/// Returns the longer sides of the finest and of the coarsest view's texels.
 fn texels(shadow: &DirectionalShadow) -> (f64, f64) {
     let sides = shadow
         .maps()
@@ -188,7 +188,7 @@ fn texels(shadow: &DirectionalShadow) -> (f64, f64) {
     })
 }
 
-/// In how many frames the truth was asked for.
+/// Scans all origins, and returns the number of frames that were compared with the truth.
 fn scan(case: &Case, scene: &Scene, casters: &[MeshCaster]) -> usize {
     let gpu = gpu();
     let descriptor = DirectionalShadowDescriptor {
@@ -205,7 +205,8 @@ fn scan(case: &Case, scene: &Scene, casters: &[MeshCaster]) -> usize {
     let mut judged = 0;
     for origin in origins() {
         let what = format!("{} at {origin}", case.words());
-        // The casters stand still in render space, so each origin puts them elsewhere in the world, of which they say nothing.
+        // The casters keep their positions in render space, so each origin puts them elsewhere in the world without a
+        // change of their revisions.
         shadow.invalidate();
         shadow.reset_history();
         let frame = DirectionalFrame {
@@ -220,7 +221,7 @@ fn scan(case: &Case, scene: &Scene, casters: &[MeshCaster]) -> usize {
         let report = match record {
             Ok(report) => report,
             Err(ShadowError::ViewNotRepresentable { .. }) => {
-                // As `DirectionalFrame::origin` says: only from 2⁴⁷ texels on.
+                // `ShadowFrameDescriptor::origin` promises this: a frame is refused only from 2⁴⁷ texels on.
                 let least_of_64 = (f64::from(case.map_size) / 64.0).min(1.0);
                 let (finest, _) = at_zero;
                 assert!(spacing * 32.0 > finest * least_of_64, "{what} is refused");
@@ -244,7 +245,7 @@ fn scan(case: &Case, scene: &Scene, casters: &[MeshCaster]) -> usize {
             at_zero = texels(&shadow);
         }
         assert!(texel <= 2.0 * at_zero.1, "{what}: {texel}");
-        // Under coarser texels no place would be settled.
+        // With coarser texels no point of the floor would be settled.
         if texel < 0.3 * f64::from(case.unit) {
             // The default kernel reaches 2.83 texels to its corner.
             let unit = f64::from(case.unit);
@@ -273,7 +274,7 @@ fn suns_of_any_origin_are_right_or_refused() {
     assert!(judged > 1500, "{judged}");
 }
 
-/// Where there is nothing to cast, nothing is reported and nothing refused, however far the origin.
+/// Where nothing casts, nothing is reported and nothing is refused, however far the origin is.
 #[test]
 fn an_empty_world_is_empty_at_any_origin() {
     let gpu = gpu();
@@ -295,7 +296,8 @@ fn an_empty_world_is_empty_at_any_origin() {
     }
 }
 
-/// Lamps three units above the floor, as far as the spacing of their f64 place allows; and lamps as far away as their origin.
+/// Lights are three units above the floor, as exactly as the spacing of their f64 position allows; others are as far
+/// away as their origin.
 #[test]
 fn lamps_of_any_origin_are_right_or_refused() {
     let gpu = gpu();
@@ -361,7 +363,8 @@ fn lamps_of_any_origin_are_right_or_refused() {
                 } else {
                     assert_finite(spot.maps().views(), spot.maps().view_uniforms(), &what);
                 }
-                // Anywhere over the slab, where the shadow that it casts leaves some of the floor lit.
+                // The test compares where the light is above the slab and the slab's shadow leaves some of the floor
+                // lit.
                 if light.distance(DVec3::Y * 3.0) > 0.5 {
                     continue;
                 }

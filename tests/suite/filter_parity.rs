@@ -1,9 +1,9 @@
-//! Every filter under every bias on the device against its twin in f64, `wgpu_shadows::reference`.
+//! Tests every filter under every bias on the device against the CPU reference, `wgpu_shadows::reference`.
 //!
-//! A comparison may fall either way where reference and texel are closer than f32 resolves. So the twin is asked not once but
-//! nine times, at the receiver and at the corners of its rounding band (`support/rounding.rs`), and the device's answer must
-//! lie between the least and the greatest of these, give or take the rounding of the weighted sum. Receivers for which the
-//! these differ are *undecided*: the test says little of them, and bounds their share.
+//! A comparison is undecided where reference depth and texel are closer than f32 resolves. So the CPU reference is
+//! evaluated not once but nine times, at the receiver and at the corners of its rounding band (`support/rounding.rs`),
+//! and the device's result must lie between the least and the greatest of these, up to the rounding of the weighted
+//! sum. Receivers for which they differ are *undecided*: the test proves little about them, and limits their share.
 
 use bytemuck::Zeroable;
 use glam::{DVec2, DVec3, DVec4, Mat4, Vec3, Vec4};
@@ -33,7 +33,7 @@ pub(super) const BIASES: [Bias; 3] = [
 
 const POINTS: usize = 4000;
 
-/// Every filter, each sharpened kind once more with a sharpness of its own, and a soft light.
+/// Returns every filter, each sharpened kind once more with another sharpness, and a soft light.
 pub(super) fn filters() -> impl Iterator<Item = Filter> {
     Filter::PLANAR.iter().copied().chain([
         Filter::Bilinear { sharpness: 4.0 },
@@ -45,7 +45,7 @@ pub(super) fn filters() -> impl Iterator<Item = Filter> {
     ])
 }
 
-/// A floor, solids, a sheet that leans 80 degrees and one that hangs obliquely.
+/// Returns a floor, solids, a sheet that leans by 80 degrees and one that hangs obliquely.
 pub(super) fn scene() -> Scene {
     Scene::new(
         gpu(),
@@ -67,7 +67,7 @@ pub(super) fn scene() -> Scene {
     )
 }
 
-/// A sun over the scene and its map, read back.
+/// Holds a sun over the scene and its map, read back.
 pub(super) struct Lit {
     pub shadow: DirectionalShadow,
     pub view: ShadowViewUniform,
@@ -116,8 +116,8 @@ impl Lit {
 const LIGHT: Vec3 = Vec3::new(0.45, -1.0, 0.3);
 const BOX: Aabb = Aabb::new(Vec3::new(-5.0, -1.0, -5.0), Vec3::new(5.0, 4.0, 5.0));
 
-/// A quarter anywhere, far beyond the box too, with any normal; a quarter on the floor along the borders of shadows; the rest
-/// on surfaces, mostly with the normal of the side that the light sees.
+/// Returns random receivers: a quarter anywhere, also far beyond the box, with any normal; a quarter on the floor along
+/// the borders of shadows; the rest on surfaces, mostly with the normal of the side that the light sees.
 pub(super) fn points(scene: &Scene, seed: u64) -> Vec<Point> {
     let mut random = Random::new(seed);
     let light = LIGHT.as_dvec3();
@@ -147,7 +147,7 @@ pub(super) fn place(point: &Point) -> (DVec3, DVec3) {
     (wide(point.position), wide(point.normal))
 }
 
-/// Is a place so close to a border of what the map covers that rounding decides on which side it is?
+/// Returns whether a position is so close to a border of what the map covers that rounding decides on which side it is.
 pub(super) fn at_border(view: &ShadowViewUniform, position: DVec3, band: &Band) -> bool {
     let relative = position - Vec3::from_array(member(view, "anchor")).as_dvec3();
     let texel_from_anchor = Mat4::from_cols_array_2d(&member(view, "texel_from_anchor")).as_dmat4();
@@ -159,7 +159,7 @@ pub(super) fn at_border(view: &ShadowViewUniform, position: DVec3, band: &Band) 
     low.cmple(band.texel).any() || high.cmple(band.texel).any() || place.z.abs() <= band.depth
 }
 
-/// Least and greatest visibility over the rounding band.
+/// Returns the least and the greatest visibility over the rounding band.
 fn bounds(filter: Filter, map: &DepthLayer<'_>, receiver: &Receiver, band: &Band) -> (f64, f64) {
     let depth = band.reference_depth(filter, receiver);
     let mut range = (f64::INFINITY, f64::NEG_INFINITY);
@@ -179,9 +179,9 @@ fn bounds(filter: Filter, map: &DepthLayer<'_>, receiver: &Receiver, band: &Band
     range
 }
 
-/// Rounding of the sum of comparisons: at most 64 products and sums, stretched by the sharpness; and for the sampler's own
-/// comparison the steps of its weights, whose number of bits is the adapter's (8 on every desktop GPU and on llvmpipe, 4 at
-/// least by the specifications), once along each axis.
+/// Returns the rounding error of the sum of comparisons: at most 64 products and sums, stretched by the sharpness. For
+/// the sampler's own comparison it is the step of its weights, whose number of bits depends on the adapter (8 on every
+/// desktop GPU and on llvmpipe, 4 at least by the specifications), once along each axis.
 fn sum_error(gpu: &Gpu, filter: Filter) -> f64 {
     let rounding = f64::from(filter.sharpness()) * 80.0 * U;
     match filter {
@@ -191,7 +191,7 @@ fn sum_error(gpu: &Gpu, filter: Filter) -> f64 {
     }
 }
 
-/// What one filter under one bias came to.
+/// Counts the results of one filter under one bias.
 #[derive(Debug, Default)]
 struct Tally {
     compared: usize,
@@ -241,7 +241,7 @@ fn compare(gpu: &Gpu, scene: &Scene, map_size: u32, filter: Filter, bias: Bias) 
 }
 
 impl Tally {
-    /// What of the comparison would make it worthless: too few answers of a kind, or too many that prove nothing.
+    /// Returns what would make the comparison worthless: too few results of a kind, or too many that prove nothing.
     fn weakness(&self, filter: Filter) -> Option<String> {
         let weak = self.undecided > POINTS / 200
             || self.compared < POINTS * 9 / 10
@@ -252,13 +252,14 @@ impl Tally {
 }
 
 #[test]
-fn visibilities_are_the_twins() {
+fn visibilities_are_those_of_the_reference() {
     let gpu = gpu();
     let scene = scene();
     let mut failures = Vec::new();
     for filter in filters() {
         for bias in BIASES {
-            // No power of two, so that coordinates are rounded on their way to the sampler; much larger than the kernel.
+            // The size is not a power of two, so that coordinates are rounded on their way to the sampler, and it is
+            // much larger than the kernel.
             let map_size = (93.0 + 9.0 * filter.reach_texels()) as u32;
             let tally = compare(gpu, &scene, map_size, filter, bias);
             if let Some(first) = tally.wrong.first() {
@@ -277,8 +278,8 @@ fn visibilities_are_the_twins() {
     );
 }
 
-/// A straight edge seen by each kernel: visibility rises from 0 to 1 over exactly twice the reach that the filter states (less
-/// where sharpened), never falls on the way, and is the mirror image of itself around the edge.
+/// A straight edge is sampled with each kernel: visibility rises from 0 to 1 over exactly twice the reach that the
+/// filter states (less where sharpened), never decreases in between, and is symmetric around the edge.
 #[test]
 fn kernels_are_even_and_reach_as_far_as_they_say() {
     const SIZE: u32 = 24;
@@ -316,11 +317,13 @@ fn kernels_are_even_and_reach_as_far_as_they_say() {
     let with_kernels = |filter: &Filter| filter.light_size() == 0.0;
     for filter in filters().filter(with_kernels) {
         let reach = filter.reach_texels();
-        // A texel counts while its centre is nearer than the reach, and texels have their centres half a texel off the edge.
+        // A texel has weight while its centre is nearer than the reach, and texels have their centres half a texel from
+        // the edge.
         let ramp = reach - 0.5;
         let mut last = 0.0;
         for step in -600..=600 {
-            // Off the centres and borders of texels, where one answer gives way to the next.
+            // These positions avoid the centres and borders of texels, where the result changes from one value to the
+            // next.
             let x = f64::from(step) / 100.0 + 0.003;
             let (here, there) = (seen(filter, EDGE + x), seen(filter, EDGE - x));
             assert!((here + there - 1.0).abs() < 1e-12, "{filter:?} at {x}");

@@ -1,5 +1,5 @@
-//! The whole path, from random cameras and boxes to visibilities: the fit must show every shadow that can be seen, and must not
-//! depend on where the world's origin lies or in what unit it is measured.
+//! Tests everything from random cameras and boxes to visibilities: the fit must show every shadow that can be seen, and
+//! must not depend on where the world's origin is or in what unit the world is measured.
 //!
 //! Seeds are fixed; `PROPTEST_RNG_SEED` and `PROPTEST_CASES` explore further.
 
@@ -22,10 +22,10 @@ use crate::support::table;
 use crate::support::view_member::member;
 
 const MAP_SIZE: u32 = 192;
-/// The default.
+/// Is the default filter.
 const FILTER: Filter = Filter::Tent3 { sharpness: 3.0 };
 
-/// Runs `test` on as many cases, and fails with the smallest that proptest finds.
+/// Runs `test` on that many cases, and fails with the smallest failure that proptest finds.
 fn run<S: Strategy>(cases: u32, strategy: S, test: impl Fn(S::Value) -> Result<(), TestCaseError>) {
     let mut config = Config {
         failure_persistence: None,
@@ -50,7 +50,7 @@ fn ask(placed: &Placed, places: &[DVec3]) -> Vec<f32> {
     SunProbe::new(gpu(), &placed.shadow).ask(gpu(), &points)
 }
 
-/// The first cascade that covers a receiver on the floor.
+/// Returns the first cascade that covers a receiver on the floor.
 fn layer_at(placed: &Placed, place: DVec3) -> Option<usize> {
     let position = placed.render(place).as_vec3().as_dvec3();
     let views = placed.shadow.maps().view_uniforms();
@@ -59,26 +59,28 @@ fn layer_at(placed: &Placed, place: DVec3) -> Option<usize> {
         .position(|view| receiver(view, FILTER, Bias::Auto, position, DVec3::Y).inside)
 }
 
-/// Longer side of the texels that a receiver is looked up in; of the coarsest where no cascade covers it.
+/// Returns the longer side of the texels that a receiver is sampled with, or of the coarsest where no cascade covers
+/// it.
 fn texel_at(placed: &Placed, place: DVec3) -> f64 {
     let views = placed.report.views.iter();
     let sizes: Vec<f64> = views
         .map(|view| f64::from(view.texel_size_world.max_element()))
         .collect();
     let coarsest = sizes.iter().copied().fold(0.0, f64::max);
-    // Where all cascades are empty, texels have no size, and any will do.
+    // Where all cascades are empty, texels have no size, and any value serves.
     layer_at(placed, place)
         .map_or(coarsest, |layer| sizes[layer])
         .max(1e-3)
 }
 
-/// Bound of the f32 error of a receiver's texel coordinates, both axes together, and of the offset that the bias adds for it.
+/// Bounds the f32 error of a receiver's texel coordinates, both axes together, and of the offset that the bias adds for
+/// it.
 fn texel_error(placed: &Placed, place: DVec3) -> f64 {
     let position = placed.render(place).as_vec3().as_dvec3();
     layer_at(placed, place).map_or(0.0, |layer| {
         let view = placed.shadow.maps().view_uniforms()[layer];
-        let twin = receiver(&view, FILTER, Bias::Auto, position, DVec3::Y);
-        let band = band(&view, FILTER, Bias::Auto, position, DVec3::Y, &twin);
+        let reference = receiver(&view, FILTER, Bias::Auto, position, DVec3::Y);
+        let band = band(&view, FILTER, Bias::Auto, position, DVec3::Y, &reference);
         let rounding = band.expect("a floor that is not edge on").texel;
         let size = placed.report.views[layer].texel_size_world.min_element();
         let offset: f32 = member(&view, "offset_world");
@@ -86,8 +88,8 @@ fn texel_error(placed: &Placed, place: DVec3) -> f64 {
     })
 }
 
-/// What the camera sees of the floor is as dark as the truth says, wherever the truth is the same for three texels around:
-/// one more than the kernel's reach, for the corner of its square and the snapping of vertices.
+/// What the camera sees of the floor is as dark as the ray-traced truth, wherever the truth is the same for three
+/// texels around: one more than the kernel's reach, for the corner of its square and the snapping of vertices.
 #[test]
 fn every_visible_shadow_is_there_and_no_other() {
     const MARGIN: f64 = 3.0;
@@ -111,7 +113,7 @@ fn every_visible_shadow_is_there_and_no_other() {
             assert_eq!(hit, blocked, "the test's two truths differ at {place}");
             count(if blocked { &dark } else { &lit });
             let wanted = if blocked { 0.0 } else { 1.0 };
-            // Sixteen weights, stretched three times.
+            // The tolerance covers sixteen weights, stretched three times.
             let error = (seen - wanted).abs();
             prop_assert!(
                 error < 1e-5,
@@ -122,7 +124,7 @@ fn every_visible_shadow_is_there_and_no_other() {
         Ok(())
     };
     run(200, world(), test);
-    // Enough of everything, and the truth says nothing of a minority only.
+    // There are enough receivers of each kind, and the truth is undecided for a minority only.
     let [dark, lit, undecided] = [&dark, &lit, &undecided].map(Cell::get);
     let all = dark + lit + undecided;
     assert!(
@@ -136,8 +138,8 @@ fn every_visible_shadow_is_there_and_no_other() {
     );
 }
 
-/// Covers the whole scene, by its bounds or by a camera that holds all of it, so that no f32 matrix of a camera has a say in
-/// what is fitted.
+/// Covers the whole scene, by its bounds or by a camera that sees all of it, so that the f32 matrix of a camera has no
+/// influence on the fit.
 fn whole_scene(by_camera: bool) -> impl Fn(Aabb) -> Coverage {
     move |bounds| {
         if !by_camera {
@@ -158,21 +160,21 @@ fn whole_scene(by_camera: bool) -> impl Fn(Aabb) -> Coverage {
     }
 }
 
-/// The same world seen from another render origin: windows and depth ranges are the same to the last bit, and visibilities
-/// differ by no more than f32 coordinates do.
+/// If the same world is seen from another render origin, light-space bounds and depth ranges are the same to the last
+/// bit, and visibilities differ by no more than f32 coordinates do.
 ///
-/// A receiver's texel coordinates err by at most `Band::texel` in each of the two frames, where the offset
-/// along the normal for the rounding of coordinates differs, too; a sharpened kernel answers no
-/// steeper than its sharpness per texel and axis. Beyond that only comparisons can flip, at receivers as close to a caster as
-/// depth resolves, and texels whose centre lies within 1/256 of an edge, to which vertices snap: at most one in five hundred
-/// of the receivers, most of which lie in and around shadows.
+/// A receiver's texel coordinates err by at most `Band::texel` in each of the two frames; the offset along the normal
+/// for the rounding of coordinates differs as well. The result of a sharpened kernel changes by no more than its
+/// sharpness per texel and axis. Beyond that only comparisons can flip, at receivers as close to a caster as depth
+/// resolves, and at texels whose centre lies within 1/256 of an edge, to which vertices snap: at most one in five
+/// hundred of the receivers, most of which lie in and around shadows.
 #[test]
 fn a_moved_origin_changes_nothing() {
     let (same, flipped) = (Cell::new(0), Cell::new(0));
     let test = |(mut world, offset, by_camera): (World, [i32; 3], bool)| {
-        // Where cascades end depends on depths along the view, and these on the camera's f32 matrix.
+        // The ends of cascades depend on depths along the view, and these on the camera's f32 matrix.
         world.cascades = 1;
-        // Multiples of an eighth up to a thousand: with the coordinates' 64ths, 16 bits of f32's 24.
+        // These are multiples of an eighth up to a thousand: with the coordinates' 64ths they take 16 bits of f32's 24.
         let offset = DVec3::from_array(offset.map(f64::from)) / 8.0;
         let place = |origin| world.place(gpu(), MAP_SIZE, origin, 1.0, whole_scene(by_camera));
         let (here, there) = (place(DVec3::ZERO), place(offset));
@@ -214,7 +216,8 @@ fn a_moved_origin_changes_nothing() {
     );
 }
 
-/// The same world in another unit: no bit of any visibility depends on it. (Powers of two, which change no mantissa.)
+/// If the same world is measured in another unit, no bit of any visibility changes. (The units are powers of two, which
+/// change no mantissa.)
 #[test]
 fn another_unit_changes_nothing() {
     let (dark, partial) = (Cell::new(0), Cell::new(0));

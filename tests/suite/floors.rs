@@ -1,18 +1,18 @@
-//! The floors of the source: modules only look down, and no two files need each other.
+//! Tests the layers of the source: modules use only those below them, and no two files need each other.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// Folders of `src` from the ground up. A folder may use itself and those before it; files that lie loose in `src` are used by
-/// all and stand where they can be reached.
+/// Lists the folders of `src` from the ground up. A folder may use itself and those before it. The files directly in `src`
+/// and those of `src/error` may be used by all, and use what they need.
 const FLOORS: [&str; 6] = ["gpu", "fit", "cast", "receive", "debug", "light"];
 
-/// What the files under `src` take from each other: by file, the files that it names something of.
+/// Holds what the files under `src` use of each other: for each file, the files from which it imports a name.
 struct House {
     uses: BTreeMap<PathBuf, BTreeSet<PathBuf>>,
 }
 
-/// A path of a `use` declaration, with its braces taken apart.
+/// Returns the paths of a `use` declaration, with its braces expanded.
 fn paths(declaration: &str) -> Vec<Vec<String>> {
     let declaration = declaration.trim();
     let Some(open) = declaration.find('{') else {
@@ -42,7 +42,7 @@ fn paths(declaration: &str) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// The `use` declarations of a source file before its tests, comments left out.
+/// Returns the `use` declarations of a source file before its tests, without comments.
 fn declarations(source: &str) -> Vec<String> {
     let code: String = source
         .split("#[cfg(test)]")
@@ -63,7 +63,7 @@ fn declarations(source: &str) -> Vec<String> {
         .collect()
 }
 
-/// The file of a module path such as `["fit", "view"]`, if there is one.
+/// Returns the file of a module path such as `["fit", "view"]`, if there is one.
 fn module_file(source: &Path, module: &[String]) -> Option<PathBuf> {
     let folder: PathBuf = module.iter().collect();
     let candidates = [folder.with_extension("rs"), folder.join("mod.rs")];
@@ -91,7 +91,7 @@ impl House {
                 }
             }
         }
-        // What a `mod.rs` or `lib.rs` exports by name, and from which file.
+        // This maps each name that a `mod.rs` or `lib.rs` exports to the file that it comes from.
         let mut exports = BTreeMap::new();
         for (file, text) in &files {
             let is_index = file.ends_with("mod.rs") || file == Path::new("lib.rs");
@@ -115,7 +115,7 @@ impl House {
         let resolve = |path: &[String]| {
             let (name, module) = path.split_last()?;
             let mut module = module.to_vec();
-            // Through one export after the other, down to the file that declares the name.
+            // The loop follows one export after the other, down to the file that declares the name.
             while let Some(next) = exports.get(&(module.clone(), name.clone())) {
                 module.clone_from(next);
             }
@@ -134,7 +134,7 @@ impl House {
         Self { uses }
     }
 
-    /// A way from a file back to itself, if there is one.
+    /// Returns a path from a file back to itself, if there is one.
     fn circle(&self) -> Option<Vec<&Path>> {
         let mut done = BTreeSet::new();
         self.uses
@@ -161,7 +161,7 @@ impl House {
         found
     }
 
-    /// Uses of a floor above the file's own.
+    /// Returns the uses of a folder above the file's own.
     fn upward(&self) -> Vec<(&Path, &Path)> {
         let floor = |file: &Path| {
             let folder = file

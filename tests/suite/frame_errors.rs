@@ -1,4 +1,5 @@
-//! Bad frames of a sun: each is refused with field and value, nothing of it is recorded, and the last good shadows remain.
+//! Tests bad frames of a sun: each is refused with field and value, nothing of it is recorded, and the last valid
+//! shadows remain.
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
@@ -31,7 +32,7 @@ fn good_frame<'a>(casters: &'a [&'a dyn ShadowCaster]) -> DirectionalFrame<'a> {
     }
 }
 
-/// A sun with a good frame behind it.
+/// Holds a sun that has recorded a valid frame.
 struct Stage {
     shadow: DirectionalShadow,
     probe: SunProbe,
@@ -64,7 +65,7 @@ impl Stage {
         assert_eq!(self.probe.ask(gpu(), &points), [0.0, 1.0]);
     }
 
-    /// Records a bad frame, submits the encoder all the same, and checks that nothing has come of it.
+    /// Records a bad frame, submits the encoder all the same, and checks that it had no effect.
     fn refuse(&mut self, frame: &DirectionalFrame<'_>) -> ShadowError {
         let before = (
             self.shadow.maps().report().clone(),
@@ -80,7 +81,7 @@ impl Stage {
         );
         assert_eq!(before, after, "{error}");
         self.assert_good_shadows();
-        // The map is still held, not only there: the good frame again costs nothing.
+        // The map is still known to be valid: the same valid frame again takes no pass.
         let again = record(gpu(), &mut self.shadow, &good_frame(&[&self.good]));
         assert_eq!((again.passes, self.good.draws.get()), (0, 1), "{error}");
         error
@@ -265,7 +266,7 @@ fn views_that_f32_cannot_hold() {
         "{error}"
     );
     let message = format!(
-        "the fitted view must be representable, got extent {extent_world} at {distance_world} from the render origin and {coordinate_world} from the world's"
+        "the fitted view must be representable in f32 and f64, got an extent of {extent_world} world units at {distance_world} from the render origin and {coordinate_world} from the world origin"
     );
     assert_eq!(error.to_string(), message);
 }

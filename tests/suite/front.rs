@@ -1,7 +1,9 @@
-//! The configurations that the library ships are worth their cost: nothing that it can do is both cheaper and closer to the truth.
+//! Tests that the configurations that the library ships are worth their cost: nothing that it can do is both cheaper
+//! and closer to the truth.
 //!
-//! What `cargo bench --bench speed_vs_error` measures in full, on small pictures and counts alone: cost is
-//! [`measuring::technique::Cost::frame_work`], error the root of the mean squared error against rays cast in double precision.
+//! `cargo bench --bench speed_vs_error` measures this in full; here it is measured on small images and with counts
+//! alone. The cost is [`measuring::technique::Cost::frame_work`], and the error is the root of the mean squared error
+//! against rays cast in double precision.
 
 #[path = "../../benches/support/mod.rs"]
 mod measuring;
@@ -19,14 +21,15 @@ use measuring::pixels::Effort;
 use measuring::probe::Prober;
 use measuring::scenes;
 
-/// Without rings of rays around each pixel, which tell errors at edges from others but do not change their sum.
+/// Omits the rings of rays around each pixel, which distinguish errors at edges from others but do not change their
+/// sum.
 const EFFORT: Effort = Effort {
     picture: [160, 90],
     disc_side: 1,
     ring_rays: 0,
 };
 
-/// Every filter and map size with the derived bias, fitted to the camera, over all scenes with hard shadows.
+/// Measures every filter and map size with the derived bias, fitted to the camera, over all scenes with hard shadows.
 fn measured() -> Vec<Overall> {
     let gpu = Gpu::new().expect("an adapter");
     let mut prober = Prober::new(&gpu);
@@ -52,7 +55,7 @@ fn measured() -> Vec<Overall> {
 #[test]
 fn presets_are_on_the_pareto_front() {
     let entries = measured();
-    // 10 filters suit every light; each with four sizes.
+    // Ten filters suit every light, each with four sizes.
     assert!(entries.len() >= 40, "only {} measured", entries.len());
     for (name, preset) in Configuration::presets() {
         if let Err(blame) = overall::judge(&entries, &preset) {
@@ -61,7 +64,7 @@ fn presets_are_on_the_pareto_front() {
     }
 }
 
-/// Which is how they are measured: with the default's other fields.
+/// The presets have the default's other fields, which is how the configurations are measured.
 #[test]
 fn presets_differ_from_the_default_in_filter_and_map_size_alone() {
     let default = DirectionalShadowDescriptor::default();
@@ -78,7 +81,8 @@ fn presets_differ_from_the_default_in_filter_and_map_size_alone() {
     }
 }
 
-/// Which is how they are measured: half the texels of a sun's map a side, for spots and for the faces of point lights.
+/// Spot lights and the faces of point lights have half the texels per side of a sun's map, which is how the
+/// configurations are measured.
 #[test]
 fn local_lights_default_to_the_filter_and_half_the_map_of_a_sun() {
     let sun = DirectionalShadowDescriptor::default();

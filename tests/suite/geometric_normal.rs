@@ -1,4 +1,4 @@
-//! `shadow_geometric_normal` by itself.
+//! Tests `shadow_geometric_normal` by itself.
 
 use glam::{Mat4, Vec3};
 use wgpu_shadows::shader;
@@ -6,7 +6,8 @@ use wgpu_shadows::shader;
 use crate::support::gpu::gpu;
 use crate::support::triangles::{SIZE, VERTEX, draw};
 
-/// Both windings, both handednesses, and sides of any length: a triangle that leans has its own normal on the side that is told.
+/// With both windings, both handednesses, and vectors of any length to the side, a leaning triangle has its own normal
+/// on the given side.
 #[test]
 fn normals_are_on_the_side_that_is_told() {
     let gpu = gpu();
@@ -34,7 +35,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
             if turned {
                 vertices.swap(1, 2);
             }
-            // The steps of a pixel in positions of all sizes: the place is scaled, and clip space with it.
+            // The steps of a pixel have positions of all sizes: the position is scaled, and clip space with it.
             for scale in [1.0, 1e-6, 1e-30, 1e-34, 1e6, 1e30] {
                 let vertices = vertices.map(|corner| corner * scale);
                 let clip = Mat4::from_scale(Vec3::new(0.3 * mirrored / scale, 0.3 / scale, 0.0));
@@ -50,7 +51,8 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
                 };
                 let context = format!("mirrored {mirrored}, turned {turned}, scale {scale}");
                 let near = |seen: [f32; 3], wanted: Vec3| {
-                    // A step of 8 bits is 1/127.5, half of it rounding, and the derivatives' own error far below.
+                    // A step of 8 bits is 1/127.5; half of it is rounding, and the error of the derivatives is far
+                    // below it.
                     Vec3::from_array(seen).abs_diff_eq(wanted, 0.5 / 127.5 + 1e-3)
                 };
                 for side in sides {

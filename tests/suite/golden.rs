@@ -1,4 +1,4 @@
-//! A small scene through an engine's own shader, and a map as `DebugView` draws it, against reference pictures.
+//! Compares a small scene through an engine's own shader, and a map as `DebugView` draws it, with reference images.
 
 use glam::{DVec3, Vec3};
 use image::RgbaImage;
@@ -19,14 +19,14 @@ use crate::support::scene::{Mesh, Scene};
 const SIZE: u32 = 128;
 const LIGHT: Vec3 = Vec3::new(-1.1, -1.0, 0.2);
 
-/// One in a thousand pixels may lie on an edge that another driver draws elsewhere.
+/// Allows one in a thousand pixels to lie on an edge that another driver draws elsewhere.
 const LIMITS: Limits = Limits {
     channel: 3,
     failed_pixels: 16,
     mean: 0.1,
 };
 
-/// Blinn-Phong with the library's visibility and its geometric normal.
+/// Computes Blinn-Phong with the library's visibility and its geometric normal.
 const SHADING: &str = "
 struct Eye {
     clip_from_render: mat4x4<f32>,
@@ -61,7 +61,8 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
 }
 ";
 
-/// Meshes and their colours: a floor, a box, a ball, a thin leaning board, and a post that throws a long thin shadow.
+/// Returns meshes and their colours: a floor, a box, a ball, a thin leaning board, and a post that casts a long thin
+/// shadow.
 fn meshes() -> Vec<(Mesh, Vec3)> {
     let board = Mesh::sheet(
         Vec3::new(-1.6, 0.0, 1.6),
@@ -118,7 +119,7 @@ fn sun(
     shadow
 }
 
-/// The scene as an engine would draw it.
+/// Draws the scene as an engine would.
 fn picture(gpu: &Gpu, shadow: &DirectionalShadow) -> RgbaImage {
     let bindings = ShadowBindings::new(
         &gpu.device,
@@ -128,7 +129,7 @@ fn picture(gpu: &Gpu, shadow: &DirectionalShadow) -> RgbaImage {
         },
     )
     .expect("valid bindings");
-    // The picture's depth is not reversed, so that a mix-up with the map's would show.
+    // The image's depth is not reversed, so that confusing it with the map's would show.
     let camera = Camera {
         reversed: false,
         ..camera()
@@ -253,7 +254,7 @@ fn a_scene_with_the_defaults() {
     assert_golden(gpu, "scene_default", &picture(gpu, &shadow), &LIMITS);
 }
 
-/// One map over the whole scene, a box filter, and a bias that somebody has tuned.
+/// The scene has one map over all of it, a box filter, and a bias that was tuned by hand.
 #[test]
 fn a_scene_by_the_textbook() {
     let (gpu, scene) = (gpu(), scene());
@@ -289,7 +290,7 @@ fn a_map_as_a_picture() {
     }
     gpu.submit(encoder);
     let picture = readback::rgba8(gpu, &target);
-    // Texel for pixel, the grey is what the map holds.
+    // Each texel is one pixel, whose grey level is the map's depth.
     let depths = readback::depth_layer(gpu, shadow.maps().texture(), 0);
     for (pixel, depth) in picture.pixels().zip(depths) {
         let error = f32::from(pixel.0[0]) - 255.0 * (1.0 - depth);

@@ -1,4 +1,4 @@
-//! When a map is drawn again and when it is kept, and that what is kept is still right.
+//! Tests when a map is drawn again and when it is kept, and that a kept map is still correct.
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
@@ -17,7 +17,7 @@ use crate::support::watched::Watched;
 const LIGHT: Vec3 = Vec3::new(0.5, -1.0, 0.25);
 const BOX: Aabb = Aabb::new(Vec3::new(-4.0, -0.5, -4.0), Vec3::new(4.0, 4.0, 4.0));
 
-/// A caster that says nothing of its revision.
+/// Is a caster without a revision.
 struct Silent(MeshCaster);
 
 impl ShadowCaster for Silent {
@@ -34,7 +34,7 @@ impl ShadowCaster for Silent {
     }
 }
 
-/// A sun, its probe, and a slab that floats a unit above the ground around the origin.
+/// Holds a sun, its probe, and a slab that floats one unit above the ground around the origin.
 struct Stage {
     gpu: &'static Gpu,
     shadow: DirectionalShadow,
@@ -82,7 +82,7 @@ impl Stage {
         record(self.gpu, &mut self.shadow, &frame)
     }
 
-    /// Status of the only view, after checking that passes and draws say the same.
+    /// Returns the status of the only view, after checking that passes and draws agree with it.
     fn status(&mut self, casters: &[&dyn ShadowCaster]) -> ViewStatus {
         let report = self.record(casters);
         let drawn = report.views[0].status == ViewStatus::Drawn;
@@ -94,7 +94,7 @@ impl Stage {
         report.views[0].status
     }
 
-    /// Is the ground where the slab's shadow falls dark, when the slab stands at `x`?
+    /// Returns whether the ground is dark where the slab's shadow falls when the slab is at `x`.
     fn is_dark_below(&self, x: f32) -> bool {
         let ground = Vec3::new(x, 1.0, 0.0) + LIGHT;
         let seen = self.probe.ask(self.gpu, &[Point::new(ground, Vec3::Y)])[0];
@@ -136,7 +136,7 @@ fn a_moved_mesh_is_drawn_again() {
     slab.set_transform(shift(2.0)).expect("a finite matrix");
     assert_eq!(stage.status(&[&slab]), ViewStatus::Drawn);
     assert!(stage.is_dark_below(2.0) && !stage.is_dark_below(0.0));
-    // The matrix that it has already is no change.
+    // Setting the matrix that the slab has already is no change.
     slab.set_transform(shift(2.0)).expect("a finite matrix");
     assert_eq!(stage.status(&[&slab]), ViewStatus::Kept);
     slab.set_transform(shift(0.0)).expect("a finite matrix");
@@ -158,7 +158,7 @@ fn two_meshes_of_the_same_shape_are_two_things() {
     assert_eq!(stage.status(&[&second]), ViewStatus::Drawn);
 }
 
-/// An engine counts the ids of its own casters as it likes: a mesh is none of them, though meshes are numbered too.
+/// An engine may number its own casters as it likes: none of them is taken for a mesh, though meshes are numbered too.
 #[test]
 fn meshes_and_an_engines_own_casters_are_never_the_same() {
     let mut stage = Stage::new();
@@ -191,7 +191,7 @@ fn a_caster_that_says_nothing_is_always_drawn() {
 fn invalidated_maps_are_drawn_again() {
     let mut stage = Stage::new();
     let slab = slab(stage.gpu);
-    // An encoder that is thrown away takes the pass and the uniforms with it.
+    // An encoder that is dropped takes the pass and the uniforms with it.
     let mut lost = stage.gpu.encoder();
     let casters: [&dyn ShadowCaster; 1] = [&slab];
     let frame = stage.frame(&casters);
@@ -232,7 +232,7 @@ fn when_casters_vanish_the_old_map_is_not_asked() {
         "the layer still holds it"
     );
     assert!(!stage.is_dark_below(0.0));
-    // Back again, the slab has its shadow, whether the layer was drawn anew or not.
+    // When the slab is back, it has its shadow, whether the layer was drawn again or not.
     stage.status(&[&slab]);
     assert!(stage.is_dark_below(0.0));
 }
@@ -242,7 +242,7 @@ fn another_light_draws_again() {
     let mut stage = Stage::new();
     let slab = slab(stage.gpu);
     assert_eq!(stage.status(&[&slab]), ViewStatus::Drawn);
-    // Only the direction counts, not its length.
+    // Only the direction matters, not its length.
     stage.light = LIGHT * 2.0;
     assert_eq!(stage.status(&[&slab]), ViewStatus::Kept);
     stage.light = Vec3::new(-0.5, -1.0, 0.25);
@@ -250,8 +250,8 @@ fn another_light_draws_again() {
     assert!(!stage.is_dark_below(0.0));
 }
 
-/// An engine that moves its render origin by a step that f32 represents exactly sees the same world: the map is kept, and the
-/// moved receivers get the same answers out of it.
+/// An engine that moves its render origin by a step that f32 represents exactly sees the same world: the map is kept,
+/// and the moved receivers have the same visibilities.
 #[test]
 fn a_map_outlives_a_moved_origin() {
     let mut stage = Stage::new();
@@ -271,7 +271,8 @@ fn a_map_outlives_a_moved_origin() {
     }
 }
 
-/// What a static scene costs under a moving camera: nothing, while the window's rung and place still serve.
+/// A static scene under a moving camera costs nothing while the quantized size and the position of the light-space
+/// bounds still suffice.
 #[test]
 fn a_trembling_camera_keeps_the_map() {
     let mut stage = Stage::new();
@@ -286,7 +287,8 @@ fn a_trembling_camera_keeps_the_map() {
         drawn += stage.record(&[&floor, &slab]).passes;
         assert!(stage.is_dark_below(0.0) && !stage.is_dark_below(2.0));
     }
-    // The first frame, and at most once more where the trembling straddles a step of the depth range or of a rung.
+    // The map is drawn in the first frame, and at most twice more, where the jitter crosses a step of the depth range
+    // or of the quantized size.
     assert!((1..=3).contains(&drawn), "{drawn} passes");
 }
 
@@ -305,7 +307,7 @@ fn cascades_are_kept_one_by_one() {
     let floor = Mesh::sheet(
         Vec3::new(-60.0, 0.0, 0.0),
         Vec3::new(0.0, 0.0, 200.0),
-        // It rises, so that its bounds can shadow themselves everywhere.
+        // The floor rises, so that by its bounds it may shadow itself everywhere.
         Vec3::new(120.0, 6.0, 0.0),
     );
     let floor = floor.caster(stage.gpu, &pipeline, Mat4::IDENTITY);
@@ -322,7 +324,8 @@ fn cascades_are_kept_one_by_one() {
     assert_eq!(statuses[2], ViewStatus::Drawn, "{second:?}");
 }
 
-/// Uniforms travel with the commands: two frames that are recorded before either is submitted each see their own.
+/// Uniforms are uploaded in the order of the commands: if two frames are recorded before either is submitted, each sees
+/// its own.
 #[test]
 fn frames_in_flight_do_not_mix() {
     let mut stage = Stage::new();

@@ -1,5 +1,5 @@
-//! Maps that are kept while the origin of render space moves: the depths in them carry the rounding of the render coordinates
-//! that they were drawn from, and no receiver may be taken for its own shadow because of it.
+//! Tests maps that are kept while the origin of render space moves: their depths carry the rounding of the render
+//! coordinates from which they were drawn, and no receiver may shadow itself because of it.
 
 use glam::{DMat3, DVec3, Mat4, Quat, Vec3};
 use wgpu_shadows::{
@@ -16,13 +16,14 @@ use crate::support::probe::{Point, SunProbe, record};
 use crate::support::random::Random;
 use crate::support::scene::{Mesh, default_pipeline};
 
-/// Distances of the wall from the world's origin, where the map is drawn first.
+/// Lists the distances of the wall from the world's origin, where the map is drawn first.
 const DISTANCES: [f64; 6] = [20.0, 120.0, 500.0, 1000.0, 5000.0, 20_000.0];
 
-/// The answers of 3000 lit receivers differ from 1 by the rounding of a sum of 16 weights, sharpened three times.
+/// Is the least visibility of lit receivers: the results of 3000 of them differ from 1 by the rounding of a sum of 16
+/// weights, sharpened three times.
 const LIT: f32 = 1.0 - 192.0 * f32::EPSILON;
 
-/// An engine's caster whose version stands still while the origin moves, as `Revision` allows.
+/// Is an engine's caster whose version does not change while the origin moves, as `Revision` allows.
 struct Rebased {
     mesh: MeshCaster,
     revision: Revision,
@@ -50,7 +51,7 @@ impl ShadowCaster for Rebased {
     }
 }
 
-/// A wall 10 m wide and high whose sides follow none of the axes, somewhere in the world.
+/// Describes a wall 10 m wide and high whose sides follow none of the axes, somewhere in the world.
 struct Wall {
     center: DVec3,
     world_from_wall: DMat3,
@@ -65,12 +66,12 @@ impl Wall {
         }
     }
 
-    /// Unit normal of the front, in world axes.
+    /// Returns the unit normal of the front, in world axes.
     fn normal(&self) -> DVec3 {
         self.world_from_wall.z_axis
     }
 
-    /// The wall as an engine draws it whose render space begins at `origin`.
+    /// Returns the wall as an engine draws it whose render space begins at `origin`.
     fn caster(&self, gpu: &Gpu, pipeline: &CasterPipeline, origin: DVec3) -> Rebased {
         let mut mesh = Mesh::cuboid(Vec3::new(-5.0, -5.0, -0.3), Vec3::new(5.0, 5.0, 0.0));
         for position in &mut mesh.positions {
@@ -83,7 +84,7 @@ impl Wall {
         }
     }
 
-    /// Receivers all over the front, all of them lit: nothing stands before it.
+    /// Returns receivers all over the front. All of them are lit, since nothing is in front of it.
     fn receivers(&self, origin: DVec3) -> Vec<Point> {
         let mut random = Random::new(11);
         let mut place = || {
@@ -100,8 +101,8 @@ fn assert_lit(seen: &[f32], what: &str) {
     assert_eq!(dark, 0, "of {} lit receivers, {what}", seen.len());
 }
 
-/// A low sun that the front of the wall faces: its depths vary so little across a texel that nothing of the bias but the
-/// allowance for rounding keeps it from shadowing itself.
+/// Returns a low sun that the front of the wall faces. Depths vary so little across a texel that the allowance for
+/// rounding is the only part of the bias that keeps the wall from shadowing itself.
 fn low_sun(wall: &Wall) -> DirectionalLight {
     DirectionalLight::new(-wall.normal().as_vec3())
 }
@@ -144,7 +145,7 @@ fn a_sun_kept_while_the_origin_moves_to_its_wall() {
     assert!(kept > 0, "a short way costs no drawing");
 }
 
-/// The other way round nothing is lost either: render coordinates that grow make the receivers coarser, not the map.
+/// Nothing is lost the other way round either: render coordinates that grow make the receivers coarser, not the map.
 #[test]
 fn a_sun_kept_while_the_origin_moves_away() {
     let gpu = gpu();
@@ -165,14 +166,15 @@ fn a_sun_kept_while_the_origin_moves_away() {
     }
 }
 
-/// A spot that the front of the wall faces.
+/// Returns a spot light that the front of the wall faces.
 fn spot(wall: &Wall) -> SpotLight {
     let toward_light = wall.normal() * 25.0;
     SpotLight {
         position_world: wall.center + toward_light,
         direction: -toward_light.as_vec3(),
         outer_angle_radians: 0.35,
-        // Less than to the farthest corner of the bounds, which are rounded, and so the same in every frame.
+        // The range is less than the distance to the farthest corner of the bounds, which are rounded, and so it is the
+        // same in every frame.
         range: 27.0,
     }
 }
@@ -207,8 +209,8 @@ fn a_spot_kept_while_the_origin_moves_to_its_wall() {
     }
 }
 
-/// The wall stands still while something moves beside it, and so comes to be copied rather than drawn. On Vulkan alone: wgpu's
-/// OpenGL backend copies no depth textures.
+/// The wall is static while an object moves beside it, and is therefore copied rather than drawn. The test runs on
+/// Vulkan alone, since wgpu's OpenGL backend copies no depth textures.
 #[test]
 fn a_wall_copied_while_the_origin_moves() {
     let gpu = vulkan();
@@ -228,7 +230,7 @@ fn a_wall_copied_while_the_origin_moves() {
                     ..wall.caster(gpu, &pipeline, origin)
                 })
                 .collect();
-            // Behind the wall, as seen from the light.
+            // The position is behind the wall, as seen from the light.
             let place = (wall.center - wall.normal() * 2.0 - origin).as_vec3();
             let mover = Rebased {
                 mesh: Mesh::cuboid(place, place + 0.5).caster(gpu, &pipeline, Mat4::IDENTITY),
@@ -250,7 +252,7 @@ fn a_wall_copied_while_the_origin_moves() {
     }
 }
 
-/// A light that a budget puts off shows its old map under the new origin.
+/// A light that a budget defers shows its old map under the new origin.
 #[test]
 fn a_spot_put_off_while_the_origin_moves() {
     let gpu = gpu();

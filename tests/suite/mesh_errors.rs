@@ -1,4 +1,5 @@
-//! What `MeshCaster` refuses: each error provoked and read as a message; and that what it accepts can be drawn.
+//! Tests what `MeshCaster` refuses: each error is provoked and read as a message; and that what it accepts can be
+//! drawn.
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
@@ -85,7 +86,7 @@ fn meshes_that_do_not_fit_their_buffers() {
     assert_eq!(caster.render_from_model(), Mat4::IDENTITY);
 }
 
-/// What of a mesh wgpu would only find wrong while it records.
+/// Errors that wgpu would find only while it records are found when the mesh is created.
 #[test]
 fn meshes_that_do_not_go_with_their_pipelines() {
     let gpu = gpu();
@@ -145,8 +146,8 @@ fn meshes_that_do_not_go_with_their_pipelines() {
     }
 }
 
-/// What wgpu would refuse or panic over while it records is refused by `MeshCaster::new`, or draws nothing. An encoder is
-/// finished and submitted with every mesh that is accepted.
+/// What wgpu would refuse or panic over while it records is refused by `MeshCaster::new`, or draws nothing. An encoder
+/// is finished and submitted with every mesh that is accepted.
 #[test]
 fn meshes_that_cannot_be_drawn() {
     use wgpu::BufferUsages as U;
@@ -243,7 +244,7 @@ fn meshes_that_cannot_be_drawn() {
     assert!(failures.is_empty(), "accepted, and not drawn: {failures:?}");
 }
 
-/// A pipeline with the engine's own vertex stage.
+/// Creates a pipeline with the engine's own vertex stage.
 fn engine_pipeline(
     gpu: &Gpu,
     source: &str,
@@ -266,7 +267,8 @@ fn engine_pipeline(
     .expect("a valid pipeline")
 }
 
-/// A mesh sets vertex buffer 0, and buffer 1 for the built-in matrix: a pipeline that reads more would lose the encoder.
+/// A mesh sets vertex buffer 0, and buffer 1 for the built-in matrix: a pipeline that reads more would make the encoder
+/// invalid.
 #[test]
 fn pipelines_that_take_more_than_a_mesh_sets() {
     let gpu = gpu();
@@ -349,7 +351,8 @@ fn pipelines_that_take_more_than_a_mesh_sets() {
             (created, needs) => panic!("{created:?} where {needs:?} is needed"),
         }
     }
-    // Vertices of the engine's own layout must be there as well, and one of a buffer that is read per instance.
+    // Vertices of the engine's own layout must be in the buffer as well, and so must the one of a buffer that is read
+    // per instance.
     let (drawn, _) = &cases[0];
     let error = create(drawn, &vertices, MeshIndices::None { vertices: 0..9 });
     let wanted = CasterError::BufferTooSmall {
@@ -449,8 +452,8 @@ fn meshes_of_another_device() {
     }
 }
 
-/// Bounds that are neither finite nor empty are refused when they are given, and so are transforms that make them so: one mesh
-/// must not stop the frame of all.
+/// Bounds that are neither finite nor empty are refused when they are given, and so are transforms that make them so:
+/// one mesh must not prevent the frame of all.
 #[test]
 fn bounds_without_end() {
     let gpu = gpu();

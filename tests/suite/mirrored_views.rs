@@ -1,5 +1,5 @@
-//! `shadow_geometric_normal` under cameras of either handedness: the normal is on the side it is told, so that a scene seen in a
-//! mirror has no more acne than the scene itself.
+//! Tests `shadow_geometric_normal` under cameras of either handedness: the normal is on the given side, so that a scene
+//! seen in a mirror has no more acne than the scene itself.
 
 use glam::{DMat4, DVec3, Mat4, Vec3};
 use wgpu_shadows::{
@@ -16,7 +16,7 @@ use crate::support::triangles::{SIZE, VERTEX, draw};
 
 const LIGHT: Vec3 = Vec3::new(-0.7, -1.0, 0.35);
 
-/// Visibility, and where something was drawn at all.
+/// Writes the visibility, and where something was drawn at all.
 const VISIBILITY: &str = "
 @fragment
 fn fragment(in: Varying) -> @location(0) vec4<f32> {
@@ -26,13 +26,14 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
 }
 ";
 
-/// A way to look at the scene: the camera as the library knows it, and what is done to space before and to clip space after it.
+/// Describes how the scene is looked at: the camera as the library knows it, and the transforms of space before it and
+/// of clip space after it.
 struct View {
     name: &'static str,
     camera: Camera,
-    /// Reflects in a plane, or leaves things where they are.
+    /// Reflects in a plane, or changes nothing.
     mirror: DMat4,
-    /// 1, or -1 for a target with y downward.
+    /// Is 1, or -1 for a target whose y points down.
     clip_y: f64,
 }
 
@@ -43,7 +44,7 @@ impl View {
         (flip * camera * self.mirror).as_mat4()
     }
 
-    /// The ray of a pixel, in the space of the scene.
+    /// Returns the ray of a pixel, in the space of the scene.
     fn ray(&self, x: f64, y: f64) -> (DVec3, DVec3) {
         let across = x / f64::from(SIZE);
         let down = y / f64::from(SIZE);
@@ -54,7 +55,7 @@ impl View {
         (start, self.mirror.transform_vector3(direction))
     }
 
-    /// What `Eye` holds.
+    /// Returns the contents of `Eye`.
     fn uniform(&self) -> Vec<f32> {
         let place = match self.camera.lens {
             Lens::Perspective { .. } => self
@@ -89,7 +90,7 @@ fn views() -> Vec<View> {
         },
         ..perspective
     };
-    // A mirror on a wall at x = -0.5, and one that leans.
+    // One mirror is on a wall at x = -0.5, and the other leans.
     let wall = reflection(DVec3::X, -0.5);
     let leaning = reflection(DVec3::new(0.8, 0.1, 0.59).normalize(), 0.2);
     let still = DMat4::IDENTITY;
@@ -111,7 +112,7 @@ fn views() -> Vec<View> {
     ]
 }
 
-/// The reflection in the plane of the points p with normal · p = distance.
+/// Returns the reflection in the plane of the points p with normal · p = distance.
 fn reflection(normal: DVec3, distance: f64) -> DMat4 {
     let image = |axis: DVec3| axis - normal * (2.0 * normal.dot(axis));
     DMat4::from_cols(
@@ -122,7 +123,7 @@ fn reflection(normal: DVec3, distance: f64) -> DMat4 {
     )
 }
 
-/// A floor, a block and a board that leans, all of flat faces.
+/// Returns a floor, a block and a board that leans, all of flat faces.
 fn meshes() -> [Mesh; 3] {
     [
         Mesh::floor(0.0, 6.0),
@@ -135,19 +136,20 @@ fn meshes() -> [Mesh; 3] {
     ]
 }
 
-/// Pixels whose truth is the same over the whole footprint of a lookup, by that truth: dark, lit.
+/// Holds the pixels whose truth is the same over the whole footprint of a lookup, by that truth: dark or lit.
 struct Settled {
     dark: Vec<[u32; 2]>,
     lit: Vec<[u32; 2]>,
 }
 
-/// What rays say of each pixel of a view. `footprint` is the reach of a lookup across the light, in world units.
+/// Returns what rays find for each pixel of a view. `footprint` is the reach of a lookup across the light, in world
+/// units.
 fn settled(scene: &Scene, view: &View, footprint: f64) -> Settled {
     let toward_light = -LIGHT.as_dvec3().normalize();
     let side = toward_light.any_orthonormal_vector();
     let across = toward_light.cross(side);
     let triangles = &scene.triangles;
-    // The nearest surface along a pixel's ray: which plane, and where.
+    // This finds the nearest surface along a pixel's ray: its plane, and the point on it.
     let seen = |x: f64, y: f64| {
         let (start, direction) = view.ray(x, y);
         triangles
@@ -171,7 +173,7 @@ fn settled(scene: &Scene, view: &View, footprint: f64) -> Settled {
             let Some((place, normal)) = seen(px, py) else {
                 continue;
             };
-            // Where the picture itself has an edge, rounding decides which surface a pixel shows.
+            // Where the image itself has an edge, rounding decides which surface a pixel shows.
             let same_plane = [(-0.1, 0.0), (0.1, 0.0), (0.0, -0.1), (0.0, 0.1)]
                 .iter()
                 .all(|(dx, dy)| {
@@ -179,7 +181,7 @@ fn settled(scene: &Scene, view: &View, footprint: f64) -> Settled {
                         normal.dot(other_normal) > 0.999 && normal.dot(other - place).abs() < 1e-6
                     })
                 });
-            // A face that turns away, or nearly, sees its footprint stretched over all that is around it.
+            // On a face that turns away from the light, or nearly so, the footprint extends over everything around it.
             if !same_plane || normal.dot(toward_light) < 0.15 {
                 continue;
             }
@@ -218,7 +220,7 @@ fn a_mirror_shows_no_acne() {
     let frame = DirectionalFrame {
         origin: DVec3::ZERO,
         light: DirectionalLight::new(LIGHT),
-        // One map for all views.
+        // One map serves all views.
         coverage: Coverage::Bounds(wgpu_shadows::Aabb::new(
             Vec3::new(-6.0, 0.0, -6.0),
             Vec3::new(6.0, 1.5, 6.0),
@@ -233,7 +235,7 @@ fn a_mirror_shows_no_acne() {
         .next()
         .expect("a view")
         .texel_size_world();
-    // The tent's reach, and a texel for the offset and the caster's rasterisation.
+    // The footprint is the tent's reach, and a texel more for the offset and the caster's rasterisation.
     let footprint = 3.0 * f64::from(texel.max_element()) * std::f64::consts::SQRT_2;
     let bindings = ShadowBindings::new(
         &gpu.device,
@@ -263,7 +265,7 @@ fn a_mirror_shows_no_acne() {
             view.name
         );
         let seen = |[x, y]: &[u32; 2]| picture.get_pixel(*x, *y).0;
-        // Rays and the rasteriser see the same.
+        // Rays and the rasteriser see the same surfaces.
         assert!(truth.lit.iter().all(|pixel| seen(pixel)[1] == 255));
         let acne = truth
             .lit

@@ -1,4 +1,4 @@
-//! One module per thing that could be wrong.
+//! Contains one module for each property that could be violated.
 
 mod any_input;
 mod beside_engine_buffers;

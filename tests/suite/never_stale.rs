@@ -1,5 +1,6 @@
-//! Maps that are kept, wholly or in part, against maps that are drawn anew: the same bits, over thousands of random frames.
-//! On Vulkan alone: wgpu's OpenGL backend copies no depth textures, so there it keeps no parts, and reads none back this fast.
+//! Compares maps that are kept, wholly or in part, with maps that are drawn completely: the bits are the same, over
+//! thousands of random frames. The tests run on Vulkan alone: wgpu's OpenGL backend copies no depth textures, so it has
+//! no static-caster caches there, and reading maps back is slow.
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
@@ -17,7 +18,7 @@ use crate::support::random::Random;
 use crate::support::scene::Mesh;
 use crate::support::texture_bytes::TextureBytes;
 
-/// Boxes, of which some move, all move, or none does, for some frames each; some come and go.
+/// Holds boxes of which some move, all move, or none does, for some frames each; some appear and disappear.
 struct Crowd {
     casters: Vec<MeshCaster>,
     shown: Vec<bool>,
@@ -71,7 +72,8 @@ impl Crowd {
     }
 }
 
-/// A mesh that does not tell its triangles: it is never kept of what stands still, nor drawn into six faces at once.
+/// Is a mesh that does not report its triangles: it is never copied from a static-caster cache, nor drawn into six
+/// faces at once.
 struct Untold<'a>(&'a dyn ShadowCaster);
 
 impl ShadowCaster for Untold<'_> {
@@ -88,13 +90,13 @@ impl ShadowCaster for Untold<'_> {
     }
 }
 
-/// How often each way of filling a layer was taken.
+/// Counts how often a layer was filled in each way.
 #[derive(Debug, Default)]
 struct Ways {
     kept: u32,
     drawn: u32,
     copied: u32,
-    /// Frames in which faces were drawn in one pass.
+    /// Counts the frames in which faces were drawn in one pass.
     one_pass: u32,
 }
 
@@ -124,7 +126,7 @@ impl Ways {
     }
 }
 
-/// The camera and the light stand still most of the time, and now and then jump; now and then an encoder is thrown away.
+/// The camera and the light are still most of the time and sometimes jump; sometimes an encoder is dropped.
 #[test]
 fn kept_maps_of_a_sun_are_what_would_be_drawn() {
     for (format, frames) in [(DepthFormat::Float32, 1500), (DepthFormat::Unorm16, 500)] {
@@ -190,7 +192,7 @@ fn kept_maps_of_a_sun_are_what_would_be_drawn() {
             gpu.submit(encoder);
             let (now, wanted) = (kept_bytes.read(gpu), fresh_bytes.read(gpu));
             for view in &report.views {
-                // A layer that nothing casts into is asked by nobody.
+                // A layer into which nothing casts is not sampled.
                 if view.status == ViewStatus::Drawn {
                     let layer = view.layer as usize;
                     assert!(
@@ -204,8 +206,8 @@ fn kept_maps_of_a_sun_are_what_would_be_drawn() {
     }
 }
 
-/// The same of the six faces of a lamp that jumps now and then, drawn in one pass or in a pass each as is cheaper, against a
-/// pass each.
+/// The same holds for the six faces of a point light that sometimes jumps: drawn in one pass or in a pass each,
+/// whichever is cheaper, they equal those of a pass each.
 #[test]
 fn kept_faces_of_a_lamp_are_what_would_be_drawn() {
     let gpu = device();

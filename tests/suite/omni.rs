@@ -1,5 +1,5 @@
-//! A point light: no seam between its faces shows, its shadows are where a ray caster has them, and its faces cost what they
-//! must.
+//! Tests point lights: no seam between the faces shows, the shadows are where a ray caster has them, and the faces cost
+//! no more than they must.
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
@@ -17,10 +17,10 @@ use crate::support::random::Random;
 use crate::support::scene::{Mesh, Scene, Triangle};
 use crate::support::table;
 
-/// All of space receives, so that every caster is drawn, a flat wall with nothing behind it too.
+/// Makes all of space receive, so that every caster is drawn, including a flat wall with nothing behind it.
 const EVERYWHERE: [Aabb; 1] = [Aabb::new(Vec3::splat(-40.0), Vec3::splat(40.0))];
 
-/// A light and the question to it.
+/// Holds a light and the probe that samples it.
 struct Lamp {
     shadow: OmniShadow,
     ask: Ask,
@@ -64,7 +64,8 @@ impl Lamp {
         record_omni(gpu, &mut self.shadow, &frame).expect("a valid frame")
     }
 
-    /// How many of the points are in shadow, and how dark the darkest is. Visibilities one step of 8 bits below 1 show as 1.
+    /// Returns how many of the points are in shadow, and how dark the darkest is. Visibilities one step of 8 bits below
+    /// 1 count as 1.
     fn false_shadows(&self, gpu: &Gpu, points: &[Point]) -> (usize, f32) {
         let seen = self.ask.points(gpu, points);
         let lit = 1.0 - 1.0 / 255.0..=1.0;
@@ -73,15 +74,15 @@ impl Lamp {
     }
 }
 
-/// Directions to the seams: along the twelve edges between two faces and into the eight corners, the tie itself (exact in
-/// f32) and places up to five texels beside it.
+/// Returns directions to the seams: along the twelve edges between two faces and into the eight corners, the tie itself
+/// (exact in f32) and positions up to five texels beside it.
 fn seam_directions(texel: f64) -> Vec<DVec3> {
     let beside = [0.0, 1e-7, 0.2, 0.5, 1.0, 1.7, 2.5, 5.0].map(|texels| texels * texel);
     let mut directions = Vec::new();
     for signs in 0..8 {
         let sign = |bit: u32| if signs >> bit & 1 == 1 { -1.0 } else { 1.0 };
         for step in 0..=16 {
-            // Eighths and halves are exact; the last is the corner.
+            // Eighths and halves are exact; the last step is the corner.
             let along = f64::from(step) / 16.0;
             for (index, off) in beside.iter().enumerate() {
                 let off = if index % 2 == 0 {
@@ -101,8 +102,9 @@ fn seam_directions(texel: f64) -> Vec<DVec3> {
     directions
 }
 
-/// Where rays from the light into the seams first meet the triangles, with the normal of the lit side; places nearer to the
-/// border of their triangle than a kernel reaches (`border`, a tangent) are left out where the neighbour leans another way.
+/// Returns the points where rays from the light into the seams first meet the triangles, with the normal of the lit
+/// side. Points nearer to the border of their triangle than a kernel reaches (`border`, a tangent) are omitted where
+/// the neighbouring triangle has another inclination.
 fn seam_points(triangles: &[Triangle], light: DVec3, texel: f64, border: f64) -> Vec<Point> {
     let mut points = Vec::new();
     for direction in seam_directions(texel) {
@@ -148,8 +150,8 @@ fn planar_samplings() -> impl Iterator<Item = (Filter, Bias)> {
 
 const SEAM_MAP: u32 = 250;
 
-/// Planes around the light that all reach across seams and corners, one at a time: six along the axes at a distance that
-/// makes ties exact, and oblique ones; and a sphere of large facets around the light.
+/// Returns planes around the light that all extend across seams and corners, one at a time: six along the axes at a
+/// distance that makes ties exact, and oblique ones; and a sphere of large facets around the light.
 fn seam_scenes(gpu: &Gpu) -> Vec<(String, Scene, DVec3, Vec<Point>)> {
     let texel = 2.0 / f64::from(SEAM_MAP);
     let mut random = Random::new(41);
@@ -170,8 +172,8 @@ fn seam_scenes(gpu: &Gpu) -> Vec<(String, Scene, DVec3, Vec<Point>)> {
     }
     let sphere = Mesh::sphere(Vec3::new(0.4, 1.1, -0.1), 3.0, 5);
     let scene = Scene::new(gpu, &[sphere]);
-    // Facets lean toward each other: a kernel of the widest filter, its border and a texel of rounding stay on one. Texels
-    // grow toward the corners of a face, by the square root of three at most.
+    // Facets lean toward each other: a kernel of the widest filter, its border and a texel of rounding stay on one
+    // facet. Texels grow toward the corners of a face, by the square root of three at most.
     let points = seam_points(&scene.triangles, light, texel, 6.0 * texel * 3.0_f64.sqrt());
     assert!(points.len() > 300, "sphere: {} points", points.len());
     scenes.push(("sphere".to_owned(), scene, light, points));
@@ -188,7 +190,7 @@ fn seams_are_lit() {
         for (name, scene, light, points) in &scenes {
             let report = lamp.record(gpu, scene, *light, None, &EVERYWHERE);
             assert!(report.passes >= 3, "{name}: {report:?}");
-            // A penumbra looks for occluders up to 33 texels around, and on a sphere finds the other facets.
+            // PCSS searches for occluders up to 33 texels around, and on a sphere it finds the other facets.
             if matches!(filter, Filter::Pcss { .. }) && name == "sphere" {
                 continue;
             }
@@ -236,7 +238,7 @@ fn seams_would_shadow_themselves() {
     }
 }
 
-/// A room with solids around a light.
+/// Returns a room with solids around a light.
 fn furnished(gpu: &Gpu) -> Scene {
     let slab = |x: f32, y: f32, z: f32, half: f32| {
         let center = Vec3::new(x, y, z);
@@ -271,7 +273,8 @@ fn shadows_are_where_rays_have_them() {
         let mut lamp = Lamp::new(gpu, MAP, filter, bias);
         for light in [DVec3::new(0.21, 0.1, -0.13), DVec3::new(-3.1, 2.9, -2.2)] {
             lamp.record(gpu, &scene, light, None, &EVERYWHERE);
-            // Reach, half a texel of stairs, and the residual offset; toward a face's corner along both axes at once.
+            // The distance is the reach, half a texel of stairs, and the residual offset; toward a face's corner along
+            // both axes at once.
             let texels = (filter.reach_texels() + 1.5) * 2.0_f64.sqrt() * 1.05;
             let tangent = texels * 2.0 / f64::from(MAP);
             let all = |_: DVec3| true;
@@ -284,7 +287,8 @@ fn shadows_are_where_rays_have_them() {
     }
 }
 
-/// Beyond the range all is lit, up to it the shadow is there: the border lies within the rounding of a squared distance.
+/// Beyond the range everything is lit, and up to it the shadow is there: the border lies within the rounding of a
+/// squared distance.
 #[test]
 fn shadows_end_at_the_range() {
     let gpu = gpu();
@@ -336,7 +340,7 @@ fn casters_on_one_side_cost_one_face() {
     let mut wanted = [ViewStatus::Empty; 6];
     wanted[0] = ViewStatus::Drawn;
     assert_eq!(statuses, wanted);
-    // The shadow is there, and every other side is lit.
+    // The shadow is there, and all other sides are lit.
     let sides = [
         Vec3::X,
         Vec3::NEG_X,
@@ -384,7 +388,7 @@ fn faces_that_no_camera_sees_are_empty() {
             assert_eq!(is_empty, face != index, "{axis}: {report:?}");
         }
         if index == 0 {
-            // Another window has other texels; along a straight edge they blur over a texel at most.
+            // Other light-space bounds have other texels; along a straight edge they blur over at most one texel.
             let after = lamp.ask.points(gpu, &points);
             let differ = before.iter().zip(&after).filter(|(a, b)| a != b).count();
             assert!(differ <= 6, "{differ} of 50 differ: {before:?} {after:?}");

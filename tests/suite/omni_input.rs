@@ -1,4 +1,4 @@
-//! Bad and odd input of point lights: refused by field and value, or answered by a visibility.
+//! Tests bad and unusual input of point lights: it is refused with field and value, or every result is a visibility.
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
@@ -67,7 +67,7 @@ fn radii_that_no_filter_has() {
             };
             let wanted = ShadowError::OutOfRange {
                 field: "OmniShadowDescriptor::filter",
-                rule: "of a finite radius above 0",
+                rule: "a filter with a finite radius above 0",
                 value: radius.to_string(),
             };
             let refused = OmniShadow::new(&gpu().device, &descriptor);
@@ -76,7 +76,7 @@ fn radii_that_no_filter_has() {
     }
 }
 
-/// Each bad frame is refused by name, and leaves the maps, the report and the answers of the last good one.
+/// Each bad frame is refused by name, and leaves the maps, the report and the visibilities of the last valid one.
 #[test]
 fn frames_that_are_refused_change_nothing() {
     let gpu = gpu();
@@ -159,14 +159,14 @@ fn frames_that_are_refused_change_nothing() {
             )
         );
         assert_eq!(ask.points(gpu, &points), [0.0, 1.0]);
-        // What was held is still held: the good frame again costs nothing.
+        // The maps are still known to be valid: the same valid frame again takes no pass.
         let again = record_omni(gpu, &mut shadow, &good).expect("a good frame");
         assert_eq!(again.passes, 0, "{error}");
     }
 }
 
-/// Lights in odd places and of odd reach: refused with an error, or every answer is a visibility. On a vertex, on a surface,
-/// on an edge, inside a solid, next to nothing and next to infinity.
+/// Lights at unusual positions and of unusual reach are refused with an error, or every result is a visibility. They
+/// are on a vertex, on a surface, on an edge, inside a solid, near zero and near infinity.
 #[test]
 fn odd_lights_get_visibilities() {
     let gpu = gpu();
@@ -180,7 +180,7 @@ fn odd_lights_get_visibilities() {
             Point::rounded(place, triangle.normal())
         })
         .collect();
-    // The corners themselves, so that a receiver lies exactly at the light.
+    // These are the corners themselves, so that a receiver lies exactly at the light.
     let corners = scene.triangles.iter().flat_map(|triangle| triangle.0);
     points.extend(corners.map(|corner| Point::rounded(corner, DVec3::Y)));
     let places = [
@@ -254,7 +254,7 @@ fn odd_lights_get_visibilities() {
     );
 }
 
-/// A light on the floor shines over it, and on a face of a box leaves the other sides of the box dark.
+/// A light on the floor shines over it, and one on a face of a box leaves the other sides of the box dark.
 #[test]
 fn lights_on_surfaces() {
     let gpu = gpu();
@@ -279,8 +279,8 @@ fn lights_on_surfaces() {
             .any(|view| view.status == ViewStatus::Drawn)
     );
     let floor = |x, z| Point::new(Vec3::new(x, -1.0, z), Vec3::Y);
-    // On the side from which the light shines: lit. Behind the box: dark, for the box's side that faces it is the light's own
-    // and cannot cast, but its far side does.
+    // On the side to which the light shines, receivers are lit. Behind the box they are dark: the face on which the
+    // light lies cannot cast, but the face opposite to it does.
     let points = [floor(-2.0, 0.3), floor(0.2, -3.0), floor(4.0, 0.0)];
     assert_eq!(ask.points(gpu, &points), [1.0, 1.0, 0.0]);
 }

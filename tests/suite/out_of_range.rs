@@ -1,4 +1,4 @@
-//! Places of which the map says nothing are lit, and nothing that can cast is cut off on its way to the map.
+//! Tests that positions that no map covers are lit, and that nothing that can cast is cut off from the map.
 
 use glam::{DVec2, DVec3, Mat4, Vec3};
 use wgpu_shadows::reference::receiver;
@@ -20,7 +20,8 @@ use crate::support::view_member::member;
 const LIGHT: Vec3 = Vec3::new(0.3, -1.0, 0.2);
 const MAP_SIZE: u32 = 128;
 
-/// A box of floor under a roof that reaches far beyond the map on all sides: wherever the map is asked, it says "dark".
+/// Holds a box of floor under a roof that extends far beyond the map on all sides: every position that the map covers
+/// is dark.
 struct Hall {
     shadow: DirectionalShadow,
     probe: SunProbe,
@@ -71,7 +72,7 @@ impl Hall {
 
     fn assert_all(&self, places: &[DVec3], wanted: f32, what: &str) {
         for (place, seen) in places.iter().zip(self.ask(places)) {
-            // A sum of at most 64 weights in f32.
+            // The tolerance covers a sum of at most 64 weights in f32.
             let error = (seen - wanted).abs();
             assert!(
                 error <= 64.0 * f32::EPSILON,
@@ -113,7 +114,8 @@ fn receivers_around_the_map_are_lit() {
         hall.assert_all(&below, 1.0, "beyond the far plane");
         let above = moved(&|place| *place + toward_light * range);
         hall.assert_all(&above, 1.0, "before the near plane");
-        // Above the roof and still in the map's range: lit by comparison, not by a limit.
+        // These positions are above the roof and still within the map's depth range: they are lit by comparison, not by
+        // a limit.
         let on_top = moved(&|place| *place + toward_light * (2.4 / toward_light.y));
         hall.assert_all(&on_top, 1.0, "on the roof");
     }
@@ -124,8 +126,8 @@ fn receivers_around_the_map_are_lit() {
     );
 }
 
-/// Toward the border the answer changes once, from the roof's shadow to light, before the kernel would leave the map: nothing
-/// is ever mixed in that is not there; and no more of the map is given away than kernel and bias can need.
+/// Toward the border the visibility changes once, from the roof's shadow to light, before the kernel would leave the
+/// map. No texel from outside ever contributes, and no more of the map is left unused than kernel and bias can need.
 #[test]
 fn the_border_is_where_the_kernel_ends() {
     const STEPS: usize = 4000;
@@ -139,7 +141,7 @@ fn the_border_is_where_the_kernel_ends() {
             let opposite = DVec2::splat(f64::from(MAP_SIZE)) - texel;
             texel.min(opposite).min_element()
         };
-        // The bias moves a receiver across the map before it is looked up; the twin says where to.
+        // The bias moves a receiver across the map before it is sampled; the CPU reference computes where to.
         let looked_up = |place: DVec3| {
             let place = place.as_vec3().as_dvec3();
             from_side(receiver(&uniform, filter, hall.bias, place, DVec3::Y).texel)
@@ -153,7 +155,7 @@ fn the_border_is_where_the_kernel_ends() {
             .as_dvec3()
             .with_y(0.0);
         for direction in [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::new(1.0, 0.0, -1.0)] {
-            // Far enough to leave the map for sure.
+            // This distance is certain to leave the map.
             let way = f64::from(view.texel_size_world().max_element()) * f64::from(MAP_SIZE) * 1.25;
             let places: Vec<_> = (0..STEPS)
                 .map(|step| center + direction * (way * step as f64 / STEPS as f64))
@@ -164,7 +166,7 @@ fn the_border_is_where_the_kernel_ends() {
             assert!(seen[first_lit..].iter().all(|v| *v == 1.0), "{}", hall.name);
             let reach = filter.reach_texels();
             let last = looked_up(places[first_lit - 1]);
-            // 1e-4 texels are more than f32 errs by in a map of this size (`support/rounding.rs`).
+            // 1e-4 texels are more than the error of f32 in a map of this size (`support/rounding.rs`).
             assert!(last >= reach - 1e-4, "{}: {last} < {reach}", hall.name);
             // |nx| + |ny| of the normal is at most the square root of two.
             let sideways =
@@ -188,7 +190,7 @@ fn doubled<T: Copy>(items: impl IntoIterator<Item = T>) -> impl Iterator<Item = 
     items.into_iter().flat_map(|item| [item, item])
 }
 
-/// Whatever an engine passes, the answer is a visibility.
+/// Whatever an engine passes, the result is a visibility.
 #[test]
 fn receivers_that_are_not_numbers_get_an_answer() {
     let odd = [
@@ -222,7 +224,7 @@ fn receivers_that_are_not_numbers_get_an_answer() {
     );
 }
 
-/// A floor, and a slab three kilometres up the light's way: between it and the camera's volume lies nothing.
+/// Holds a floor, and a slab three kilometres away toward the light, with nothing between it and the camera's volume.
 struct FarSlab {
     scene: Scene,
     light: DVec3,
@@ -282,7 +284,8 @@ fn a_caster_three_kilometres_up_casts() {
     let mut places = Vec::new();
     for _ in 0..2000 {
         let place = random.point(DVec3::new(-12.0, 0.0, -12.0), DVec3::new(12.0, 0.0, 12.0));
-        // Three texels are more than the default's two; the slanting light stretches them on the ground, less than twice.
+        // Three texels are more than the default's two; the slanting light stretches them on the ground by less than
+        // two.
         let around = [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z].map(|d| d * 6.0 * texel);
         let blocked = |at: DVec3| occluded(&slab.scene.triangles, at, -slab.light, 1e-6);
         let here = blocked(place);
@@ -309,7 +312,7 @@ fn a_caster_three_kilometres_up_casts() {
     );
 }
 
-/// The optional feature changes nothing: the same map, bit for bit, on a device that has it and on one that has not.
+/// The optional feature changes nothing: the map is the same, bit for bit, on a device with it and on one without it.
 #[test]
 fn depth_clip_control_changes_nothing() {
     let with_feature = Gpu::new(GpuRequest {
@@ -333,7 +336,7 @@ fn depth_clip_control_changes_nothing() {
 
 #[test]
 fn an_identity_camera_sees_the_clip_volume() {
-    // A camera whose matrices are both the identity sees the box -1..1, -1..1, 0..1: the least that a projection can be.
+    // A camera whose matrices are both the identity sees the box -1..1, -1..1, 0..1: the simplest projection.
     let gpu = gpu();
     let scene = Scene::new(
         gpu,

@@ -1,4 +1,5 @@
-//! An engine with bindings of its own, as `examples/own_layout.rs` has them, gets what `ShadowBindings` gives, to the bit.
+//! Tests that an engine with its own bindings, such as `examples/own_layout.rs`, gets the same visibilities as from
+//! `ShadowBindings`, to the bit.
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
@@ -17,13 +18,13 @@ use crate::support::wgsl;
 
 const MODULES: [&str; 4] = ["bias_plane", "filter_tent3", "cube_face", "normal"];
 
-/// The modules and the engine's own text behind them.
+/// Returns the modules, followed by the engine's own text.
 fn composition() -> String {
     let modules = shader::compose(&MODULES).expect("modules of the table");
     modules + include_str!("../../examples/own_layout.wgsl")
 }
 
-/// The engine's bind group.
+/// Creates the engine's bind group.
 fn own_group(
     gpu: &Gpu,
     sun: &DirectionalShadow,
@@ -142,7 +143,7 @@ fn own_bindings_give_the_same_bits() {
     let mut random = Random::new(79);
     let points: Vec<_> = (0..8000)
         .map(|index| {
-            // Half of them on the floor, and some anywhere, outside the maps too.
+            // Half of the points lie on the floor, and some anywhere, also outside the maps.
             let among = if index % 2 == 0 {
                 2
             } else {

@@ -1,4 +1,4 @@
-//! The twin of `Filter::Pcss` and `Filter::PcssRotated` against the closed form.
+//! Tests the CPU reference of `Filter::Pcss` and `Filter::PcssRotated` against the closed form.
 
 use glam::DVec2;
 use wgpu_shadows::Filter;
@@ -6,10 +6,10 @@ use wgpu_shadows::reference::{self, DepthLayer, Receiver};
 
 use super::penumbra::{Profile, STEPS, beyond_chord};
 
-/// The twin agrees with the closed form too, so that a wrong device cannot hide behind a wrong twin: over an ideal map, in
-/// either pattern.
+/// The CPU reference agrees with the closed form as well, so that a wrong device cannot be hidden by a wrong reference:
+/// over an ideal map, with either pattern.
 #[test]
-fn the_twin_spreads_as_the_closed_form() {
+fn the_reference_spreads_as_the_closed_form() {
     const SIZE: u32 = 128;
     let depths: Vec<f32> = (0..SIZE * SIZE)
         .map(|texel| if texel % SIZE < SIZE / 2 { 0.875 } else { 0.5 })

@@ -1,4 +1,5 @@
-//! `Filter::PcssRotated`: as wide and as true as the fixed pattern, with a grain that stands still in the world.
+//! Tests `Filter::PcssRotated`: it is as wide and as accurate as the fixed pattern, with noise that is fixed in the
+//! world.
 
 use glam::{DVec3, Vec2};
 use wgpu_shadows::{
@@ -13,7 +14,7 @@ use crate::support::probe::record;
 use crate::support::scene::{Mesh, Scene};
 use crate::support::view_member::member;
 
-/// Widths within 10 % of the closed form and rmse at most 0.05, as of the fixed pattern.
+/// Widths are within 10 % of the closed form and the rmse is at most 0.05, as for the fixed pattern.
 #[test]
 fn turned_penumbrae_are_as_wide_as_the_light_makes_them() {
     for (height, diameter, map_size) in [(1.0, 0.2, 512), (3.0, 0.2, 512), (1.0, 0.5, 700)] {
@@ -25,8 +26,8 @@ fn turned_penumbrae_are_as_wide_as_the_light_makes_them() {
     }
 }
 
-/// While the window moves under a walking camera and keeps its texels, a place of the world keeps its cell of the grid, by
-/// which its patterns are turned; the cell of a place at the border of two is left out.
+/// While the light-space bounds move under a walking camera and keep their texels, a position of the world keeps its
+/// cell of the grid, which rotates its patterns. Positions at the border of two cells are omitted.
 #[test]
 fn the_grain_is_fixed_in_the_world() {
     let gpu = gpu();

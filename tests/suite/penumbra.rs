@@ -1,9 +1,9 @@
-//! `Filter::Pcss`: the device against its twin in f64, and both against what a light with size really does.
+//! Tests `Filter::Pcss`: the device against the CPU reference, and both against the true shadow of a light with a size.
 //!
-//! The closed form: a half-plane whose edge hides a disk-shaped light lets through the share of the disk that lies beyond a
-//! chord. With t the distance of a receiver from the middle of the penumbra over its half-width R, that is
-//! 1/2 + (t √(1 - t²) + asin t) / π. A sun of angular diameter a spreads R = h tan(a/2) under an edge of height h; a disk of
-//! radius r at height H spreads R = r h / (H - h).
+//! The closed form is this: a half-plane whose edge hides a disk-shaped light transmits the part of the disk that lies
+//! beyond a chord. With t the distance of a receiver from the middle of the penumbra divided by the half-width R of the
+//! penumbra, that is 1/2 + (t √(1 - t²) + asin t) / π. A sun of angular diameter a spreads R = h tan(a/2) under an edge
+//! of height h; a disk of radius r at height H spreads R = r h / (H - h).
 
 use std::f64::consts::PI;
 
@@ -24,15 +24,16 @@ use crate::support::rounding::band;
 use crate::support::scene::{Mesh, Scene};
 use crate::support::table;
 
-/// WGSL promises sine and cosine to 2^-11 of the unit circle; the widest disk is 32 texels.
+/// Is the error of the samples' positions: WGSL guarantees sine and cosine to 2^-11 of the unit circle, and the widest
+/// disk is 32 texels.
 const SAMPLE_ERROR_TEXELS: f64 = 32.0 / 2048.0;
 
-/// Each answer lies between the least and the greatest of the twin's around the receiver: at the corners of its rounding
-/// band, widened by the error of the samples' places. A sample alone can fall to the other side of a texel's border, which
-/// moves the mean height of the occluders, and with it the radius, by a part of itself; one in a hundred answers may be off
-/// by that.
+/// Each result lies between the least and the greatest of the CPU reference's around the receiver: at the corners of
+/// its rounding band, widened by the error of the samples' positions. A single sample can fall to the other side of a
+/// texel's border, which changes the mean height of the occluders, and with it the radius, by a fraction of itself; one
+/// in a hundred results may be off by that.
 #[test]
-fn penumbrae_are_the_twins() {
+fn penumbrae_are_those_of_the_reference() {
     let gpu = gpu();
     let scene = scene();
     let sizes = [0.01, 0.2, 0.8];
@@ -61,7 +62,7 @@ fn penumbrae_are_the_twins() {
             }
             let texel = band.texel + SAMPLE_ERROR_TEXELS;
             let depth = band.reference_depth(filter, &receiver);
-            let twins = (0..9).map(|corner| {
+            let references = (0..9).map(|corner| {
                 let sign = |bit: u32| f64::from(corner >> bit & 1) * 2.0 - 1.0;
                 let (aside, toward) = match corner {
                     8 => (DVec2::ZERO, 0.0),
@@ -74,10 +75,10 @@ fn penumbrae_are_the_twins() {
                 };
                 reference::visibility(filter, &map, &moved)
             });
-            let (low, high) = twins.fold((1.0_f64, 0.0_f64), |(low, high), seen| {
+            let (low, high) = references.fold((1.0_f64, 0.0_f64), |(low, high), seen| {
                 (low.min(seen), high.max(seen))
             });
-            // Sums of 128 products, and the tent's sharpness of three.
+            // The tolerance covers sums of 128 products, and the tent's sharpness of three.
             let tolerance = 1e-4;
             let answer = f64::from(answer);
             compared += 1;
@@ -100,13 +101,13 @@ fn penumbrae_are_the_twins() {
     }
 }
 
-/// The share of a disk of radius 1 beyond a chord at -t.
+/// Returns the fraction of a disk of radius 1 that lies beyond a chord at -t.
 pub(super) fn beyond_chord(t: f64) -> f64 {
     let t = t.clamp(-1.0, 1.0);
     0.5 + (t * (1.0 - t * t).sqrt() + t.asin()) / PI
 }
 
-/// Where the closed form reaches `share`, in half-widths.
+/// Returns where the closed form reaches `share`, in half-widths.
 fn chord_of(share: f64) -> f64 {
     let (mut low, mut high) = (-1.0, 1.0);
     for _ in 0..60 {
@@ -120,15 +121,16 @@ fn chord_of(share: f64) -> f64 {
     low
 }
 
-/// Places along x from -2R to 2R, as many as there are steps, on lines along z whose starts are spread over a texel.
+/// Is the number of positions along x from -2R to 2R, on lines along z whose starts are spread over a texel.
 pub(super) const STEPS: usize = 161;
 const LINES: usize = 12;
 
-/// Visibilities across an edge at x = 0 under rotation by `turn` around y, against the closed form of half-width `radius`.
+/// Holds the visibilities across an edge at x = 0 under rotation by `turn` around y, against the closed form of
+/// half-width `radius`.
 pub(super) struct Profile {
-    /// Mean over the lines at each step.
+    /// Is the mean over the lines at each step.
     mean: Vec<f64>,
-    /// Root mean square error over all places.
+    /// Is the root mean square error over all positions.
     rmse: f64,
 }
 
@@ -161,7 +163,7 @@ impl Profile {
         }
     }
 
-    /// Distance between 10 % and 90 %, in half-widths, by the first crossing of either.
+    /// Returns the distance between 10 % and 90 %, in half-widths, by the first crossing of either.
     fn width(&self) -> f64 {
         let crossing = |share: f64| {
             let after = self.mean.iter().position(|seen| *seen >= share);
@@ -173,7 +175,7 @@ impl Profile {
         crossing(0.9) - crossing(0.1)
     }
 
-    /// Returns how far the width is off, as a share of the closed form's, and the rmse.
+    /// Returns the relative error of the width in relation to the closed form's, and the rmse.
     pub(super) fn assert_true(&self, name: &str) -> [f64; 2] {
         let wanted = chord_of(0.9) - chord_of(0.1);
         let width = self.width();
@@ -194,7 +196,7 @@ fn words([width, rmse]: [f64; 2]) -> String {
     format!("width within {:.1} %, rmse {rmse:.3}", 100.0 * width)
 }
 
-/// A floor, and a half-plane at height `height` that covers x < 0, turned around y.
+/// Returns a floor, and a half-plane at height `height` that covers x < 0, rotated around y.
 fn half_plane(gpu: &Gpu, height: f64, turn: f64) -> Scene {
     let turned = |v: DVec3| v.rotate_axis(DVec3::Y, turn).as_vec3();
     let sheet = Mesh::sheet(
@@ -205,7 +207,7 @@ fn half_plane(gpu: &Gpu, height: f64, turn: f64) -> Scene {
     Scene::new(gpu, &[Mesh::floor(0.0, 4.0), sheet])
 }
 
-/// `radius` texels of a map over 8 metres.
+/// Returns the profile of a sun whose penumbra has a half-width of `radius` texels of a map over 8 metres.
 pub(super) fn sun_profile(
     gpu: &Gpu,
     height: f64,
@@ -255,7 +257,7 @@ fn a_sun_spreads_as_its_diameter_says() {
                 light_size: diameter,
             };
             let (profile, texels) = sun_profile(gpu, height, filter, map_size, turn);
-            // Wider than the tent that stands in for narrow ones, and narrower than the 32 texels at which it stops.
+            // The penumbra is wider than the tent that replaces narrow ones, and narrower than the limit of 32 texels.
             assert!((4.0..30.0).contains(&texels), "{texels}");
             let name =
                 format!("height {height} diameter {diameter} turn {turn:.1} ({texels:.1} texels)");
@@ -308,8 +310,8 @@ fn a_spot_spreads_as_its_radius_says() {
     );
 }
 
-/// The shadow's side next to the foot of a wall is hard, within the two texels of the tent; two metres on it is as wide as
-/// the light makes it.
+/// The side of the shadow next to the foot of a wall is hard, within the two texels of the tent; two metres further it
+/// is as wide as the light makes it.
 #[test]
 fn shadows_are_hard_where_the_caster_touches() {
     let gpu = gpu();
@@ -322,7 +324,7 @@ fn shadows_are_hard_where_the_caster_touches() {
         ..Default::default()
     };
     let mut shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");
-    // A sheet: of a thick wall a map holds the front, and blurs by its distance.
+    // The wall is a sheet: of a thick wall a map contains the front, and the blur follows the front's distance.
     let wall = Mesh::sheet(Vec3::new(0.0, 0.0, -9.0), Vec3::Z * 9.0, Vec3::Y * 6.0);
     let scene = Scene::new(gpu, &[Mesh::floor(0.0, 4.0), wall]);
     let frame = DirectionalFrame {
@@ -338,7 +340,8 @@ fn shadows_are_hard_where_the_caster_touches() {
     let report = record(gpu, &mut shadow, &frame);
     let texel = report.views[0].texel_size_world.max_element();
     let probe = SunProbe::new(gpu, &shadow);
-    // Along z across the side of the shadow, at a distance from the wall: how much of it is neither dark nor lit.
+    // This counts, along z across the side of the shadow, at a distance from the wall, how much of it is neither dark
+    // nor lit.
     let partial = |distance: f32, half: f32| {
         let points: Vec<_> = (0..400)
             .map(|step| half * (step as f32 / 199.5 - 1.0))
@@ -367,7 +370,7 @@ fn shadows_are_hard_where_the_caster_touches() {
         soft > 8.0 * hard && soft > 0.7 * radius(1.5),
         "{soft} against {hard}"
     );
-    // Behind the wall, a texel from its foot, all is dark.
+    // Behind the wall, a texel from its foot, everything is dark.
     let foot: Vec<_> = (1..200)
         .map(|step| Point::new(Vec3::new(texel, 0.0, -0.01 * step as f32 - 0.1), Vec3::Y))
         .collect();

@@ -1,4 +1,5 @@
-//! Indices that no slot of a pool has: lit, whatever their product with the views of a light comes to in 32 bits.
+//! Tests indices that no slot of a pool has: they are lit, whatever their product with the number of views of a light
+//! is in 32 bits.
 
 use glam::Vec3;
 use wgpu_shadows::{Bias, Filter};
@@ -10,7 +11,7 @@ use crate::support::probe::Point;
 
 const CAPACITY: u32 = 2;
 
-/// Six times these, in 32 bits, are: past the pool, 0, 2, -6, 2, and 6 for the second light's own.
+/// Are indices whose products with six are, in 32 bits: past the pool, 0, 2, -6, 2, and 6 for the second light's own.
 const NO_SLOTS: [u32; 6] = [
     CAPACITY,
     0x8000_0000,

@@ -1,4 +1,5 @@
-//! The names of the WGSL that the crate's documentation promises under semver, each used by a text as an engine writes it.
+//! Tests that the WGSL has the names that the crate's documentation promises under semver. Shaders such as an engine
+//! writes use each of them.
 
 use wgpu_shadows::{Bias, Filter, ShadowBindings, ShadowBindingsDescriptor, shader};
 
@@ -6,7 +7,7 @@ use crate::support::gpu::gpu;
 use crate::support::lights::Kind;
 use crate::support::wgsl;
 
-/// Panics where `engine` is not valid behind the text of the library.
+/// Asserts that `engine` is valid WGSL after the text of the library.
 fn assert_valid(library: String, engine: &str) {
     wgsl::validate(&(library + engine)).unwrap_or_else(|error| panic!("{error}"));
 }
@@ -50,7 +51,7 @@ fn names_of_modules_are_there() {
         "pcss",
         "pcss_rotated",
     ];
-    // A module that is named twice is in the text once.
+    // `compose` writes a module once, even if it is named twice.
     for (access, map) in [
         ("view", "texture_depth_2d_array"),
         ("texels_by_samples", "texture_2d_array<f32>"),

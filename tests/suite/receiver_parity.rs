@@ -1,5 +1,5 @@
-//! The biases on the device against their twins in f64: where a receiver stands in the map, its depth, its gradient, and
-//! whether the map covers it.
+//! Tests the biases on the device against the CPU reference: the position of a receiver in the map, its depth, its
+//! gradient, and whether the map covers it.
 
 use glam::DVec2;
 use wgpu_shadows::reference;
@@ -10,7 +10,7 @@ use crate::support::gpu::{Gpu, gpu};
 use crate::support::probe::PointShader;
 use crate::support::rounding::band;
 
-/// A receiver as two vectors: texel, depth, covered or not; gradient.
+/// Writes a receiver as two vectors: texel, depth, covered or not; gradient.
 const RAW: &str = "
 @group(1) @binding(0) var<uniform> view: ShadowViewUniform;
 
@@ -31,7 +31,7 @@ fn module_of(bias: Bias) -> (&'static str, &'static str) {
     }
 }
 
-/// One bind group with the light's own uniform buffer.
+/// Creates one bind group with the light's own uniform buffer.
 fn view_group(gpu: &Gpu, buffer: &wgpu::Buffer) -> (wgpu::BindGroupLayout, wgpu::BindGroup) {
     let layout = gpu
         .device
@@ -60,10 +60,10 @@ fn view_group(gpu: &Gpu, buffer: &wgpu::Buffer) -> (wgpu::BindGroupLayout, wgpu:
 }
 
 #[test]
-fn receivers_are_the_twins() {
+fn receivers_are_those_of_the_reference() {
     let gpu = gpu();
     let scene = scene();
-    // Reaches and map sizes differ, and with them windows, borders and gradients.
+    // Reaches and map sizes differ, and with them light-space bounds, borders and gradients.
     let kinds = [
         (Filter::Bilinear { sharpness: 1.0 }, 93),
         (Filter::Tent7 { sharpness: 2.0 }, 1024),
@@ -78,34 +78,39 @@ fn receivers_are_the_twins() {
             let shader = PointShader::new(gpu, &wgsl, "array<vec4<f32>, 2>", &call, &layout);
             let points = points(&scene, 5);
             let answers: Vec<[f32; 8]> = shader.ask(gpu, &group, &points);
-            // Shares of the bands that the errors of texel and depth take up at worst.
+            // These are the largest fractions of the bands that the errors of texel and depth take up.
             let mut used = (0.0_f64, 0.0_f64);
             let (mut edge_on, mut outside) = (0, 0);
             for (point, answer) in points.iter().zip(answers) {
                 let (position, normal) = place(point);
-                let twin = reference::receiver(&lit.view, filter, bias, position, normal);
-                let Some(band) = band(&lit.view, filter, bias, position, normal, &twin) else {
+                let reference = reference::receiver(&lit.view, filter, bias, position, normal);
+                let Some(band) = band(&lit.view, filter, bias, position, normal, &reference) else {
                     edge_on += 1;
                     continue;
                 };
                 let [x, y, depth, inside, gradient_x, gradient_y, ..] = answer.map(f64::from);
-                let texel_error = (DVec2::new(x, y) - twin.texel).abs();
-                let gradient_error = (DVec2::new(gradient_x, gradient_y) - twin.gradient).abs();
-                let depth_error = (depth - twin.depth).abs();
+                let texel_error = (DVec2::new(x, y) - reference.texel).abs();
+                let gradient_error =
+                    (DVec2::new(gradient_x, gradient_y) - reference.gradient).abs();
+                let depth_error = (depth - reference.depth).abs();
                 used.0 = used.0.max((texel_error / band.texel).max_element());
                 used.1 = used.1.max(depth_error / band.depth);
                 let context =
-                    format!("{filter:?} {bias:?} {point:?}\n{answer:?}\n{twin:?}\n{band:?}");
+                    format!("{filter:?} {bias:?} {point:?}\n{answer:?}\n{reference:?}\n{band:?}");
                 assert!(texel_error.cmple(band.texel).all(), "{context}");
                 assert!(depth_error <= band.depth, "{context}");
                 assert!(gradient_error.cmple(band.gradient).all(), "{context}");
                 let undecided = at_border(&lit.view, position, &band);
-                assert!(undecided || (inside == 1.0) == twin.inside, "{context}");
+                assert!(
+                    undecided || (inside == 1.0) == reference.inside,
+                    "{context}"
+                );
                 outside += usize::from(inside == 0.0);
             }
-            // Bands that no error comes near would hide mistakes as large as they are.
+            // A band that no error comes near would hide mistakes as large as itself.
             assert!(used.0 > 0.05 && used.1 > 0.05, "{used:?} of the bands");
-            // Random places with random normals are rarely edge on, and a quarter of the points lie far around the map.
+            // Random positions with random normals are rarely edge-on, and a quarter of the points lie far around the
+            // map.
             assert!(edge_on <= 3, "{edge_on} receivers edge on");
             assert!(outside > points.len() / 20, "{outside} receivers outside");
         }

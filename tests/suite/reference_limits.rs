@@ -1,5 +1,5 @@
-//! The f64 reference of the WGSL at the ends of what its types can hold: an answer in 0..=1, never a panic. Tests are built
-//! with overflow checks, so that an index that wraps is seen.
+//! Tests the CPU reference of the WGSL at the limits of its types: every result is in 0..=1, and nothing panics. Tests
+//! are built with overflow checks, so that an index that wraps is noticed.
 
 use glam::{DVec2, DVec3};
 use wgpu_shadows::reference::{DepthLayer, Receiver, holds, receiver, visibility, weight};
@@ -31,7 +31,7 @@ const BIASES: [Bias; 3] = [
     },
 ];
 
-/// Sizes whose squares leave i64 (from 3 037 000 500 on) or come close, and the smallest ones.
+/// Are sizes whose squares exceed i64 (from 3 037 000 500 on) or come close, and the smallest ones.
 const SIZES: [u32; 7] = [
     0,
     1,
@@ -42,7 +42,7 @@ const SIZES: [u32; 7] = [
     u32::MAX,
 ];
 
-/// Numbers of any bits, half of them from the ends of what f64 has.
+/// Returns a number of any bits, half of them from the limits of f64.
 fn any_number(random: &mut Random) -> f64 {
     const ODD: [f64; 14] = [
         0.0,
@@ -86,8 +86,8 @@ fn assert_answers(map: &DepthLayer<'_>, receiver: &Receiver) {
     }
 }
 
-/// In a map of which one texel is known, the nearest place is shadowed by it, and the farthest, whose texels are missing and
-/// count as nothing, is lit.
+/// In a map of which one texel is known, the nearest position is shadowed by it, and the farthest, whose texels are
+/// missing and count as empty, is lit.
 #[test]
 fn a_layer_of_any_size_has_corners() {
     let at = |place: f64| Receiver {
@@ -113,7 +113,7 @@ fn a_layer_of_any_size_has_corners() {
     }
 }
 
-/// Receivers of any numbers over maps of any size, and receivers on the map, which reach its texels.
+/// Receivers of any numbers are sampled over maps of any size, and so are receivers on the map, which reach its texels.
 #[test]
 fn any_receiver_has_a_visibility() {
     let mut random = Random::new(31);
@@ -153,7 +153,7 @@ fn any_receiver_has_a_visibility() {
     assert!(shadowed > 100, "{shadowed}");
 }
 
-/// Uniforms of any bits, places and normals of any numbers, and a lookup of what they give.
+/// Uniforms have any bits, positions and normals any numbers; the receivers that result are sampled.
 #[test]
 fn any_uniform_has_a_receiver() {
     let mut random = Random::new(32);

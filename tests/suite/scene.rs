@@ -1,4 +1,4 @@
-//! One frame for all lights: several cameras that share the maps, and who casts and who receives.
+//! Tests one frame for all lights: several cameras that share the maps, and which objects cast and receive.
 
 use glam::{DMat4, DVec3, Mat4, Vec3};
 use wgpu_shadows::{
@@ -19,7 +19,7 @@ use crate::support::scene::{Mesh, Triangle, default_pipeline, occluded};
 const SUN: DVec3 = DVec3::new(0.35, -1.0, 0.2);
 const MAP_SIZE: u32 = 2048;
 
-/// A mesh with the flags of the test's choice.
+/// Is a mesh with the flags that the test chooses.
 struct Flagged {
     mesh: MeshCaster,
     casts: bool,
@@ -52,7 +52,7 @@ impl ShadowCaster for Flagged {
     }
 }
 
-/// Two yards a hundred units apart, each with boxes on a floor and a camera of its own.
+/// Holds two yards a hundred units apart, each with boxes on a floor and a camera of its own.
 struct Yards {
     casters: Vec<MeshCaster>,
     triangles: Vec<Triangle>,
@@ -99,13 +99,14 @@ impl Yards {
         self.casters.iter().map(|caster| caster as _).collect()
     }
 
-    /// The camera of one yard.
+    /// Returns the camera of one yard.
     fn camera(&self, yard: usize) -> Camera {
         let middle = self.middles[yard];
         Camera::modern(middle + DVec3::new(1.0, 7.0, 9.0), middle, 0.9, 1.5)
     }
 
-    /// Places of a yard's floor that its camera sees, whose truth toward the light is the same for `around` world units.
+    /// Returns positions of a yard's floor that its camera sees and whose truth toward the light is the same for
+    /// `around` world units.
     fn settled(&self, yard: usize, toward_light: impl Fn(DVec3) -> DVec3, around: f64) -> Settled {
         let mut random = Random::new(9 + yard as u64);
         let mut settled = Settled::default();
@@ -147,16 +148,16 @@ fn sun(gpu: &Gpu, stability: Stability, cascades: u32) -> DirectionalShadow {
     DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun")
 }
 
-/// What `shadow` says of a yard's settled places is the truth.
+/// Asserts that the visibilities of `shadow` at a yard's settled positions are the truth.
 fn assert_yard(gpu: &Gpu, yards: &Yards, ask: &Ask, yard: usize, texel: f64, what: &str) {
-    // A kernel reaches 2.83 texels to its corner; the floor lies aslant by at most the light's own slope.
+    // A kernel reaches 2.83 texels to its corner; the floor is slanted by at most the light's own slope.
     let settled = yards.settled(yard, |_| -SUN.normalize(), 4.5 * texel);
     let seen = ask.points(gpu, &settled.points);
     settled.assert_agrees(&seen, &format!("{what}, yard {yard}"));
 }
 
-/// Two cameras that see different parts of the world share one light's maps, and while nothing moves the maps are kept. The
-/// window over both yards is some 110 units wide.
+/// Two cameras that see different parts of the world share one light's maps, and while nothing moves the maps are kept.
+/// The light-space bounds over both yards are some 110 units wide.
 #[test]
 fn two_cameras_share_the_maps_of_a_sun() {
     let gpu = gpu();
@@ -202,14 +203,15 @@ fn two_cameras_share_the_maps_of_a_sun() {
     }
 }
 
-/// A camera more costs no texels of a light whose fit it does not widen, and a mirrored one counts like any other.
+/// An additional camera costs no texels of a light whose fit it does not widen, and a mirrored one counts like any
+/// other.
 #[test]
 fn a_mirror_sees_what_its_camera_sees() {
     let gpu = gpu();
     let yards = Yards::new(gpu);
     let list = yards.list();
     let camera = yards.camera(0).view().with_max_distance(25.0);
-    // Upside down: the handedness of the picture is the other one, and what is seen is the same.
+    // The camera is upside down: the handedness of the image is reversed, and what is seen is the same.
     let flip = DMat4::from_scale(DVec3::new(1.0, -1.0, 1.0)).as_mat4();
     let mirrored = CameraView {
         clip_from_view: flip * camera.clip_from_view,
@@ -311,7 +313,8 @@ fn two_cameras_share_the_maps_of_local_lights() {
     ];
     for yard in 0..2 {
         for (ask, texel) in asks.iter().zip(texels) {
-            // A kernel of 2.83 texels to its corner, stretched by the low angle at which the light meets the floor.
+            // A kernel reaches 2.83 texels to its corner, stretched by the low angle at which the light meets the
+            // floor.
             let settled = yards.settled(yard, |at| place - at, 2.83 * texel / 0.3);
             let seen = ask.points(gpu, &settled.points);
             settled.assert_agrees(&seen, &format!("yard {yard}"));
@@ -319,7 +322,8 @@ fn two_cameras_share_the_maps_of_local_lights() {
     }
 }
 
-/// A dome that does not receive costs no texels; a sheet that does not cast is not drawn and still counts as a receiver.
+/// A dome that does not receive costs no texels; a sheet that does not cast is not drawn and still counts as a
+/// receiver.
 #[test]
 fn who_casts_and_who_receives() {
     let gpu = gpu();
@@ -361,11 +365,11 @@ fn who_casts_and_who_receives() {
         with_one_culled.culled += 1;
         with_one_culled
     });
-    // With its flags as they are by default the dome would take the whole map.
+    // With its default flags the dome would take the whole map.
     (dome.casts, dome.receives) = (true, true);
     let coarse = report(&[&slab, &floor, &dome]);
     assert!(coarse.texel_size_world.x > 4.0 * alone.texel_size_world.x);
-    // Where nothing receives but the slab itself, its shadow is for nobody.
+    // Where nothing receives except the slab itself, nothing needs its shadow.
     floor.receives = false;
     let own = report(&[&slab, &floor]);
     assert!(
@@ -374,7 +378,8 @@ fn who_casts_and_who_receives() {
     );
 }
 
-/// The coverage of a frame means the same to all lights: without an end everything counts, in a box what lies in it.
+/// The coverage of a frame means the same for all lights: without a limit everything counts, and with a box what lies
+/// in it.
 #[test]
 fn coverage_is_one_for_all_lights() {
     let gpu = gpu();
@@ -440,7 +445,7 @@ fn coverage_is_one_for_all_lights() {
     );
 }
 
-/// Errors of a frame name the camera of several that is not sound.
+/// Errors of a frame name the camera, of several, that is invalid.
 #[test]
 fn errors_name_the_camera() {
     let good = CameraView::new(Mat4::IDENTITY, Mat4::IDENTITY);

@@ -1,6 +1,7 @@
-//! A flat surface does not shadow itself: at no angle to the light, under no filter, at no resolution, in no depth range.
+//! Tests that a flat surface does not shadow itself: at no angle to the light, under no filter, at no resolution, in no
+//! depth range.
 //!
-//! No tolerance is needed: the bias is derived to leave room for every rounding that happens on the way, so the number of
+//! No tolerance is needed: the bias is derived so that it allows for every rounding on the way, so the number of
 //! receivers darker than 1 - 1/255 must be zero.
 
 use glam::{DVec3, Vec3};
@@ -25,7 +26,7 @@ const RANGES: [f64; 3] = [1e1, 1e3, 1e5];
 const POINTS: usize = 1024;
 const FLOAT: DepthFormat = DepthFormat::Float32;
 
-/// All filters, with the default's sharpness and with a soft light, under the biases that promise this.
+/// Returns all filters, with the default's sharpness and with a soft light, under the biases that guarantee this.
 fn samplings() -> Vec<(Filter, Bias)> {
     let more = [Filter::default(), Filter::Pcss { light_size: 0.02 }];
     Filter::PLANAR
@@ -36,7 +37,7 @@ fn samplings() -> Vec<(Filter, Bias)> {
         .collect()
 }
 
-/// A sheet, the light that grazes it, and the box that is covered.
+/// Holds a sheet, the light that grazes it, and the box that is covered.
 struct Slope {
     name: String,
     tilt: f64,
@@ -77,8 +78,9 @@ impl Slope {
         }
     }
 
-    /// Under a vertical light the light's box of an upright box is tight, so the sheet fills the map, and the depth range is
-    /// what one asks for: the covered box ends `range` below the sheet's highest point, or at its lowest where that is deeper.
+    /// Returns an upright box under a vertical light. Its light-space box is tight, so the sheet fills the map, and the
+    /// depth range is the one that is given: the covered box ends `range` below the sheet's highest point, or at its
+    /// lowest where that is deeper.
     fn upright(gpu: &Gpu, tilt: f64, azimuth: f64, range: f64) -> Self {
         let slope = tilt.to_radians().tan();
         let along = DVec3::new(azimuth.to_radians().cos(), 0.0, azimuth.to_radians().sin()) * slope;
@@ -97,7 +99,7 @@ impl Slope {
         Self::new(gpu, (tilt, name), sheet, DVec3::NEG_Y, bounds)
     }
 
-    /// A sheet in any orientation under a light in any direction, `distance` or so away from the render origin.
+    /// Returns a sheet in any orientation under a light in any direction, about `distance` away from the render origin.
     fn oblique(gpu: &Gpu, tilt: f64, distance: f64, random: &mut Random) -> Self {
         let normal = random.direction();
         let u = normal.any_orthonormal_vector();
@@ -111,7 +113,7 @@ impl Slope {
             (u * size).as_vec3(),
             (v * size).as_vec3(),
         );
-        // A margin on all sides keeps the fit from passing over a sheet that nothing lies behind.
+        // A margin on all sides makes the fit include a sheet that has nothing behind it.
         let mut bounds = sheet.bounds();
         bounds.min -= Vec3::ONE;
         bounds.max += Vec3::ONE;
@@ -136,7 +138,8 @@ impl Slope {
         )
     }
 
-    /// Texels that the sheet ought to cover, give or take those along its border.
+    /// Asserts that the map contains about as many texels of the sheet as the sheet should cover, except for those
+    /// along its border.
     fn assert_drawn(&self, gpu: &Gpu, shadow: &DirectionalShadow, report: &ShadowReport) {
         let texel = report.views[0].texel_size_world.as_dvec2();
         let light = self.light.as_dvec3();
@@ -155,7 +158,7 @@ impl Slope {
     }
 }
 
-/// A sun and its probe, made once for all the slopes that it is shown.
+/// Holds a sun and its probe, which are made once for all the slopes.
 struct Sun {
     shadow: DirectionalShadow,
     probe: SunProbe,
@@ -185,7 +188,7 @@ impl Sun {
         }
     }
 
-    /// How many receivers are in shadow, and how dark the darkest is.
+    /// Returns how many receivers are in shadow, and how dark the darkest is.
     fn false_shadows(&self, gpu: &Gpu, slope: &Slope) -> (usize, f32) {
         let visibilities = self.probe.ask(gpu, &slope.points);
         let darkest = visibilities.iter().copied().fold(1.0, f32::min);
@@ -207,7 +210,7 @@ fn upright_slopes(gpu: &Gpu) -> Vec<Slope> {
     slopes
 }
 
-/// Returns how many receivers were asked.
+/// Returns how many receivers were sampled.
 fn assert_no_false_shadow(format: DepthFormat, map_sizes: &[u32], slopes: &[Slope]) -> usize {
     let gpu = gpu();
     let mut failures = Vec::new();
@@ -246,7 +249,7 @@ fn lit(asked: usize) -> String {
     format!("0 of {asked} receivers")
 }
 
-/// Maps down to a single texel, smaller than their filters' kernels: the scene is drawn into them all the same.
+/// Maps are as small as a single texel, smaller than their filters' kernels: the scene is drawn into them all the same.
 #[test]
 fn slopes_in_tiny_maps_are_lit() {
     let slopes: Vec<_> = upright_slopes(gpu()).into_iter().step_by(7).collect();
@@ -278,7 +281,7 @@ fn slopes_in_large_maps_are_lit() {
     );
 }
 
-/// The step of 16 bits, 1.5 units at a range of 1e5, is part of the derived bias: no angle and no range brings acne.
+/// The step of 16 bits, 1.5 units at a range of 1e5, is part of the derived bias: no angle and no range causes acne.
 #[test]
 fn slopes_in_16_bit_maps_are_lit() {
     let slopes = upright_slopes(gpu());
@@ -308,15 +311,15 @@ fn oblique_slopes_are_lit() {
     );
 }
 
-/// Far from the render origin, where positions, the sheet's corners among them, are rounded to a fraction of a texel and more,
-/// a sheet is still no shadow of itself. (An f32 has steps of 1/128 at a hundred thousand units.)
+/// Far from the render origin, where positions, the sheet's corners among them, are rounded to a fraction of a texel
+/// and more, a sheet still does not shadow itself. (An f32 has steps of 1/128 at a hundred thousand units.)
 #[test]
 fn slopes_far_from_the_render_origin_are_lit() {
     let gpu = gpu();
     let mut random = Random::new(19);
     let mut slopes = Vec::new();
     for distance in [1e2, 1e3, 1e4, 1e5] {
-        // Nearer to edge on, the rounding of the corners alone turns a sheet's other side to the light.
+        // Nearer to edge-on, the rounding of the corners alone turns a sheet's other side to the light.
         for tilt in [0.0, 30.0, 60.0, 75.0, 85.0] {
             slopes.extend((0..3).map(|_| Slope::oblique(gpu, tilt, distance, &mut random)));
         }
@@ -330,8 +333,8 @@ fn slopes_far_from_the_render_origin_are_lit() {
     );
 }
 
-/// The sheets are really in the maps of the tests above, all of their area; and without a bias they shadow themselves, so
-/// these tests would see it.
+/// The sheets are really in the maps of the tests above, with all of their area; and without a bias they shadow
+/// themselves, so these tests would notice it.
 #[test]
 fn the_slopes_are_in_the_map_and_would_shadow_themselves() {
     let gpu = gpu();
@@ -348,7 +351,8 @@ fn the_slopes_are_in_the_map_and_would_shadow_themselves() {
         assert_eq!((report.passes, report.draws()), (1, 1), "{}", slope.name);
         slope.assert_drawn(gpu, &sun.shadow, &report);
         let (dark, _) = sun.false_shadows(gpu, slope);
-        // Half of a kernel lies behind a plane that leans, in depth too where it leans enough; a sheet that is nearly edge on falls between the texels' centres.
+        // Half of a kernel lies behind a plane that leans, in depth as well where it leans enough; a sheet that is
+        // nearly edge-on falls between the texels' centres.
         let (upright, level) = (slope.light == Vec3::NEG_Y, slope.tilt < 2.0);
         let least = match slope.tilt {
             _ if upright => POINTS / 2,

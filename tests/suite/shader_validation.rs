@@ -1,4 +1,4 @@
-//! Every WGSL text of the library through naga, and the table that says what each requires.
+//! Validates every WGSL text of the library with naga, and tests the table that states what each requires.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -8,7 +8,7 @@ use wgpu_shadows::shader::{self, MODULES, ShaderModule};
 
 use crate::support::wgsl;
 
-/// Fails with all that went wrong, not with the first of it.
+/// Fails with all failures, not only with the first.
 fn report(failures: &[String]) {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
@@ -20,7 +20,7 @@ fn find(name: &str) -> &'static ShaderModule {
         .unwrap_or_else(|| panic!("no module {name}"))
 }
 
-/// All that a module requires, directly or not, without itself.
+/// Returns all modules that a module requires, directly or not, without itself.
 fn all_required(module: &ShaderModule) -> BTreeSet<&'static str> {
     let mut found = BTreeSet::new();
     let mut open = module.requires.to_vec();
@@ -55,8 +55,8 @@ fn every_module_validates_with_what_it_requires() {
     report(&failures);
 }
 
-/// Without any one of the modules it requires, directly or not, a module does not compile; and what it names is required
-/// directly. So the table holds nothing too much and nothing too little.
+/// Without any one of the modules that it requires, directly or not, a module does not compile; and the modules whose
+/// names it uses are required directly. So the table contains nothing too much and nothing too little.
 #[test]
 fn every_requirement_is_needed_and_direct() {
     let mut failures = Vec::new();
@@ -72,13 +72,14 @@ fn every_requirement_is_needed_and_direct() {
                 failures.push(format!("{} compiles without {dropped}", module.name));
             }
         }
-        // The pass modules that take each other's place give their entry points the same names.
+        // The pass modules that replace each other give their entry points the same names.
         let own = wgsl::top_level_names(module.source);
         let mentioned: BTreeSet<_> = wgsl::identifiers(module.source)
             .into_iter()
             .filter(|name| !own.contains(name))
             .collect();
-        // What a module uses of one that can be replaced, it uses of what replaces it, too, and requires only the former.
+        // What a module uses of one that can be replaced, it also uses of the replacement, and it requires only the
+        // former.
         let used: BTreeSet<&str> = MODULES
             .iter()
             .filter(|other| other.name != module.name && other.replaces.is_none())
@@ -100,7 +101,7 @@ fn every_requirement_is_needed_and_direct() {
     report(&failures);
 }
 
-/// The table and the directory hold the same texts under the same names.
+/// The table and the directory contain the same texts under the same names.
 #[test]
 fn the_table_is_the_directory() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("wgsl");
@@ -126,8 +127,9 @@ fn the_table_is_the_directory() {
     assert_eq!(in_table, on_disk);
 }
 
-/// With the declarations of their holes, the templates of a light's functions are valid WGSL as they stand: each that selects a
-/// view with each that looks the visibility up. All declare what is the library's, so that no light takes a name of an engine's.
+/// With the declarations of their holes, the templates of a light's functions are valid WGSL as they stand: each that
+/// selects a view with each that looks the visibility up. All names that they declare begin with the library's prefix,
+/// so that no light declares a name of an engine's.
 #[test]
 fn templates_validate_as_they_stand() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("wgsl/template");
@@ -140,7 +142,7 @@ fn templates_validate_as_they_stand() {
         let text = fs::read_to_string(&path).expect("a readable file");
         let declared = wgsl::top_level_names(&text);
         let foreign = |declared: &&String| !declared.to_lowercase().starts_with("shadow_");
-        // The name of a sampler is filled in as a whole.
+        // The whole name of a sampler is a hole, so it has no prefix in the template.
         if let Some(foreign) = declared.iter().find(foreign)
             && !["holes.wgsl", "sampler.wgsl"].contains(&&*name)
         {
@@ -171,7 +173,8 @@ fn templates_validate_as_they_stand() {
     report(&failures);
 }
 
-/// What lets the texts be concatenated with an engine's, and loaded as WESL or naga_oil modules as they are.
+/// These properties allow the texts to be concatenated with an engine's, and to be loaded unchanged as WESL or naga_oil
+/// modules.
 #[test]
 fn texts_are_plain_and_names_are_the_librarys_own() {
     let mut failures = Vec::new();
@@ -223,8 +226,8 @@ fn texts_are_plain_and_names_are_the_librarys_own() {
     report(&failures);
 }
 
-/// All modules go together, in one text, but for those that take another's place and passes that are drawn in each other's: no two modules declare the same
-/// name, unless it is that of an entry point in both.
+/// All modules can be put together in one text, except those that replace another and passes that are drawn instead of
+/// each other: no two modules declare the same name, unless it is that of an entry point in both.
 #[test]
 fn names_do_not_collide() {
     let entry_points = |module: &ShaderModule| -> BTreeSet<String> {

@@ -1,5 +1,5 @@
-//! A spot light: cones from a thread to nearly a half space, without acne, dark up to the rim and lit beyond it, and its
-//! shadows where a ray caster has them.
+//! Tests spot lights: cones from a thread to nearly a half space have no acne, are dark up to the rim and lit beyond
+//! it, and their shadows are where a ray caster has them.
 
 use std::f64::consts::{PI, TAU};
 
@@ -18,7 +18,7 @@ use crate::support::table;
 
 const EVERYWHERE: [Aabb; 1] = [Aabb::new(Vec3::splat(-60.0), Vec3::splat(60.0))];
 
-/// What a cone spans, from rim to rim.
+/// Are the angles that a cone spans, from rim to rim.
 const CONES_DEGREES: [f64; 11] = [
     0.1, 1.0, 10.0, 45.0, 90.0, 120.0, 150.0, 170.0, 178.0, 179.0, 179.9,
 ];
@@ -67,7 +67,8 @@ fn light(position_world: DVec3, direction: DVec3, cone_degrees: f64, range: f32)
     }
 }
 
-/// A direction `share` of the way from the axis to the rim, turned around the axis; the rim is the light's own, in f32.
+/// Returns a direction at the fraction `share` of the way from the axis to the rim, rotated around the axis; the rim is
+/// the light's own, in f32.
 fn in_cone(light: &SpotLight, share: f64, turn: f64) -> DVec3 {
     let axis = light.direction.as_dvec3().normalize();
     let side = axis.any_orthonormal_vector();
@@ -76,7 +77,7 @@ fn in_cone(light: &SpotLight, share: f64, turn: f64) -> DVec3 {
     axis * angle.cos() + aside * angle.sin()
 }
 
-/// A plane under the light, leaning, and receivers on it all over the cone, out to nearly the end of the range.
+/// Returns a leaning plane under the light, and receivers on it all over the cone, out to nearly the end of the range.
 fn plane_under(light: &SpotLight, tilt: f64, random: &mut Random) -> (Mesh, Vec<Point>) {
     let axis = light.direction.as_dvec3().normalize();
     let side = axis.any_orthonormal_vector();
@@ -90,7 +91,7 @@ fn plane_under(light: &SpotLight, tilt: f64, random: &mut Random) -> (Mesh, Vec<
         (u * 100.0).as_vec3(),
         (v * 100.0).as_vec3(),
     );
-    // The plane through the rounded corners.
+    // This is the plane through the rounded corners.
     let triangle = sheet.triangles(&glam::Mat4::IDENTITY)[0];
     let (through, normal) = (triangle.0[0], triangle.normal());
     let mut points = Vec::new();
@@ -118,7 +119,7 @@ fn planes_under_any_cone_are_lit() {
     );
 }
 
-/// One map of nearly a half space: its texels are wider than the distance to what they see.
+/// One map covers nearly a half space: its texels are wider than the distance to what they see.
 #[test]
 fn planes_under_the_widest_cones_are_lit() {
     let asked = assert_planes_lit(&CONES_DEGREES[8..]);
@@ -129,7 +130,7 @@ fn planes_under_the_widest_cones_are_lit() {
     );
 }
 
-/// Returns how many receivers were asked.
+/// Returns how many receivers were sampled.
 fn assert_planes_lit(cones_degrees: &[f64]) -> usize {
     let gpu = gpu();
     let (mut failures, mut asked) = (Vec::new(), 0);
@@ -184,7 +185,7 @@ fn assert_planes_lit(cones_degrees: &[f64]) -> usize {
     asked
 }
 
-/// Without a bias the same planes shadow themselves, so the test above would see it.
+/// Without a bias the same planes shadow themselves, so the test above would notice it.
 #[test]
 fn planes_would_shadow_themselves() {
     let gpu = gpu();
@@ -208,7 +209,7 @@ fn planes_would_shadow_themselves() {
     }
 }
 
-/// Under a plate that covers the whole cone all is dark up to the rim, and lit from the rim on.
+/// Under a plate that covers the whole cone everything is dark up to the rim, and lit from the rim on.
 #[test]
 fn the_cone_ends_at_its_rim() {
     let gpu = gpu();
@@ -222,7 +223,7 @@ fn the_cone_ends_at_its_rim() {
             let normal = -axis;
             let u = normal.any_orthonormal_vector();
             let v = normal.cross(u);
-            // Occluders on all sides, closer than the receivers.
+            // There are occluders on all sides, closer than the receivers.
             let dome = Mesh::sphere(light.position_world.as_vec3(), 5.0, 24);
             let plate = Mesh::sheet(
                 (light.position_world + axis - (u + v) * 2.0).as_vec3(),

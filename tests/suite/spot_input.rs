@@ -1,4 +1,4 @@
-//! Bad input of spot lights: refused by field and value, and nothing changes.
+//! Tests bad input of spot lights: it is refused with field and value, and nothing changes.
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{Aabb, Filter, ShadowError, SpotLight, SpotShadow, SpotShadowDescriptor};

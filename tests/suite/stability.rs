@@ -1,4 +1,4 @@
-//! Extents that no motion of the camera changes, splits at given depths, and what a walk through a town changes.
+//! Tests extents that no motion of the camera changes, splits at given depths, and what a walk through a town changes.
 
 use glam::DVec3;
 use wgpu_shadows::{
@@ -20,7 +20,7 @@ fn sun(descriptor: &DirectionalShadowDescriptor<'_>) -> DirectionalShadow {
     DirectionalShadow::new(&gpu().device, descriptor).expect("a valid sun")
 }
 
-/// Houses along streets.
+/// Returns houses along streets.
 fn town() -> Scene {
     let mut random = Random::new(31);
     let mut meshes = vec![Mesh::floor(0.0, 150.0)];
@@ -33,7 +33,7 @@ fn town() -> Scene {
     Scene::new(gpu(), &meshes)
 }
 
-/// A camera that walks 1.5 units a second at 60 frames and turns by 20 degrees a second.
+/// Returns a camera that walks 1.5 units a second at 60 frames and turns by 20 degrees a second.
 fn walker(frame: u32) -> Camera {
     let time = f64::from(frame) / 60.0;
     let eye = DVec3::new(-20.0 + 1.5 * time, 1.7, 1.0);
@@ -56,9 +56,10 @@ fn frame<'a>(
     }
 }
 
-/// Over 200 frames of the walk, a point of the floor that the same cascade serves with the same texel size before and after
-/// keeps its visibility, to the rounding of texel coordinates (`28uN` in each frame, times the sharpness of three and two
-/// axes) but for ties of comparisons, one in five hundred. Texel sizes change for at most a twentieth of the cascades a frame.
+/// Over 200 frames of the walk, a point of the floor that the same cascade covers with the same texel size before and
+/// after keeps its visibility, to the rounding of texel coordinates (`28uN` in each frame, times the sharpness of three
+/// and two axes), except for ties of comparisons, one in five hundred. Texel sizes change for at most a twentieth of
+/// the cascades per frame.
 #[test]
 fn a_walk_changes_shadows_only_with_a_rung() {
     const FRAMES: u32 = 200;
@@ -124,8 +125,8 @@ fn a_walk_changes_shadows_only_with_a_rung() {
     );
 }
 
-/// Whatever the camera does, the texels of a sphere's cascades are the ones of the first frame, to the bit, and what it sees
-/// in the slice is held.
+/// Whatever the camera does, the texels of a sphere's cascades are those of the first frame, to the bit, and what the
+/// camera sees in the slice is covered.
 #[test]
 fn no_motion_changes_a_spheres_texels() {
     let scene = town();
@@ -167,7 +168,7 @@ fn no_motion_changes_a_spheres_texels() {
     assert!(texels.iter().all(Option::is_some), "{texels:?}");
 }
 
-/// A sphere needs an end: a camera without a far plane must bring a distance limit.
+/// A sphere needs a finite end: a camera without a far plane must have a distance limit.
 #[test]
 fn a_sphere_around_an_endless_view_is_refused() {
     let scene = town();
@@ -194,7 +195,7 @@ fn a_sphere_around_an_endless_view_is_refused() {
     );
 }
 
-/// Each place is held by the cascade of its depth or a finer one, unless no shadow reaches it.
+/// Each position is covered by the cascade of its depth or a finer one, unless no shadow reaches it.
 #[test]
 fn explicit_splits_end_where_they_say() {
     let scene = town();
@@ -234,7 +235,7 @@ fn explicit_splits_end_where_they_say() {
         }
     }
     assert!(by_cascade.iter().all(|count| *count > 20), "{by_cascade:?}");
-    // What neither its own nor a finer cascade holds is out of the reach of every shadow.
+    // What neither its own nor a finer cascade covers is out of the reach of every shadow.
     left_out.push(Point::rounded(camera.pose.eye + DVec3::Y * 100.0, DVec3::Y));
     let seen = SunProbe::new(gpu(), &shadow).ask(gpu(), &left_out);
     assert!(seen.iter().all(|seen| *seen > 0.999), "{seen:?}");
@@ -250,7 +251,7 @@ fn explicit_splits_end_where_they_say() {
     let report = record(gpu(), &mut shadow, &frame(&list, &camera, 80.0));
     let empty = |index: usize| report.views[index].texel_size_world.x == 0.0;
     assert!(empty(0) && empty(1) && !empty(2), "{report:?}");
-    // And ends that do not grow, or are no numbers, are refused.
+    // Ends that do not grow or are not finite are refused.
     for ends in [
         &[2.0, 2.0][..],
         &[3.0, 1.0],

@@ -1,5 +1,5 @@
-//! A device whose shaders cannot gather, as those of WebGL 2: OpenGL ES 3.0, which Mesa gives a process whose environment asks
-//! for it. There the library draws what it draws elsewhere.
+//! Tests a device whose shaders cannot gather, like those of WebGL 2: OpenGL ES 3.0, which Mesa provides to a process
+//! whose environment requests it. There the library draws what it draws elsewhere.
 
 use image::RgbaImage;
 use wgpu_shadows::{Bias, Filter, debug::DebugImage, debug::DebugView, shader};
@@ -11,14 +11,15 @@ use crate::support::lights::{Kind, Light, camera, stage};
 use crate::support::picture::{COLOR, color_pass, color_target};
 use crate::support::readback;
 
-/// Desktop OpenGL is not to be had, and OpenGL ES is 3.0. What is compared with comes from Vulkan, whatever the run is on.
+/// Disables desktop OpenGL and limits OpenGL ES to 3.0. The images that are compared with come from Vulkan, whatever
+/// the backend of the run.
 const ES_3_0: [(&str, &str); 3] = [
     ("SHADOW_TEST_BACKEND", "vulkan"),
     ("MESA_GL_VERSION_OVERRIDE", "3.0"),
     ("MESA_GLES_VERSION_OVERRIDE", "3.0"),
 ];
 
-/// The device, or none where the machine has no OpenGL, or not Mesa's, which listens to these variables.
+/// Returns the device, or `None` where the machine has no OpenGL, or not Mesa's, which reads these variables.
 fn es_3_0() -> Option<Gpu> {
     if !Gpu::is_there(wgpu::Backends::GL) {
         return None;
@@ -37,7 +38,8 @@ fn es_3_0() -> Option<Gpu> {
     is_mesa.then_some(gpu)
 }
 
-/// All was drawn, or nothing where there is no such device: not on a run on Mesa's OpenGL.
+/// Asserts that everything was drawn, or nothing where there is no such device; the latter is not permitted in a run on
+/// Mesa's OpenGL.
 fn assert_drawn(drawn: usize, all: usize) {
     let adapter = &gpu().adapter;
     let has_mesa = adapter.backend == wgpu::Backend::Gl && adapter.driver_info.contains("Mesa");
@@ -47,7 +49,7 @@ fn assert_drawn(drawn: usize, all: usize) {
     );
 }
 
-/// Filters of every kernel, and the sampler's own, which needs no gather.
+/// Returns filters of every kernel, and the sampler's own, which needs no gather.
 fn filters(kind: Kind) -> Vec<Filter> {
     let mut filters = vec![
         Filter::default(),
@@ -94,7 +96,7 @@ fn draw_lights() -> usize {
     drawn
 }
 
-/// Can a pipeline of the device's gather from a map?
+/// Returns whether a pipeline of the device can gather from a map.
 fn gathers(gpu: &Gpu) -> bool {
     let source = shader::compose(&["filter_nearest", "texels"]).expect("a module of the table")
         + "
@@ -183,7 +185,7 @@ fn debug_picture(gpu: &Gpu, light: &dyn Light, what: DebugImage) -> RgbaImage {
     readback::rgba8(gpu, &target)
 }
 
-/// The tint of a white picture of a wall at some distance, across the borders of cascades.
+/// Returns the tint of a white image of a wall at some distance, across the borders of cascades.
 fn tinted(gpu: &Gpu, light: &dyn Light) -> RgbaImage {
     let device = &gpu.device;
     let view = DebugView::new(device, COLOR).expect("a format for pictures");
@@ -239,7 +241,7 @@ fn tinted(gpu: &Gpu, light: &dyn Light) -> RgbaImage {
     readback::rgba8(gpu, &target)
 }
 
-/// The same pixels, give or take a step of 8 bits, and more than one grey or colour.
+/// Asserts that the pixels are the same, up to a step of 8 bits, and that there is more than one grey or colour.
 fn assert_same([wanted, seen]: &[RgbaImage; 2], name: &str) {
     let pixels = || wanted.pixels().zip(seen.pixels());
     let differ = pixels()

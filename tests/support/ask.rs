@@ -1,4 +1,4 @@
-//! Asks any set of lights through `ShadowBindings`, and records their frames.
+//! Samples any set of lights through `ShadowBindings`, and records their frames.
 
 use wgpu_shadows::{
     OmniShadow, ShadowBindings, ShadowBindingsDescriptor, ShadowError, ShadowMaps, SpotShadow,
@@ -9,14 +9,16 @@ use crate::support::frames::{OmniFrame, RecordFrame, SpotFrame};
 use crate::support::gpu::Gpu;
 use crate::support::probe::{Point, PointShader};
 
-/// A bind group for a set of lights, and one question to them. Outlives every frame of the lights.
+/// Holds a bind group for a set of lights and a shader that samples them. It remains valid in every frame of the
+/// lights.
 pub struct Ask {
     bindings: ShadowBindings,
     shader: PointShader,
 }
 
 impl Ask {
-    /// `value` is a WGSL expression over `point.position` and `point.normal` that calls the lights' functions.
+    /// Makes the shader. `value` is a WGSL expression over `point.position` and `point.normal` that calls the lights'
+    /// functions.
     pub fn new(gpu: &Gpu, lights: &[(&str, &ShadowMaps)], value: &str) -> Self {
         let descriptor = ShadowBindingsDescriptor {
             visibility: wgpu::ShaderStages::COMPUTE,
@@ -28,19 +30,19 @@ impl Ask {
         Self { bindings, shader }
     }
 
-    /// One light by itself.
+    /// Samples one light by itself.
     pub fn light(gpu: &Gpu, source: &ShadowMaps) -> Self {
         let value = "shadow_light(point.position, point.normal)";
         Self::new(gpu, &[("light", source)], value)
     }
 
-    /// The light in slot `index` of a pool.
+    /// Samples the light in slot `index` of a pool.
     pub fn slot(gpu: &Gpu, pool: &ShadowMaps, index: u32) -> Self {
         let value = format!("shadow_lights({index}u, point.position, point.normal)");
         Self::new(gpu, &[("lights", pool)], &value)
     }
 
-    /// Visibility from each point under the maps of the last submitted frame.
+    /// Returns the visibility from each point under the maps of the last submitted frame.
     pub fn points(&self, gpu: &Gpu, points: &[Point]) -> Vec<f32> {
         self.shader.ask(gpu, self.bindings.bind_group(), points)
     }

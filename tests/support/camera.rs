@@ -1,18 +1,18 @@
-//! Cameras of every kind that engines have, with the rays of their pixels.
+//! Provides cameras of every kind that engines have, with the rays of their pixels.
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 use wgpu_shadows::CameraView;
 
-/// Where a camera stands and looks: view space is right-handed and looks along -z.
+/// Describes the position and orientation of a camera: view space is right-handed and looks along -z.
 #[derive(Clone, Copy, Debug)]
 pub struct Pose {
     pub eye: DVec3,
-    /// Columns are right, up and backward in render space.
+    /// Has the columns right, up and backward in render space.
     pub axes: DMat3,
 }
 
 impl Pose {
-    /// At `eye`, looking at `target`, with the head up.
+    /// Returns the pose at `eye`, looking at `target`, with its upper side up.
     pub fn looking_at(eye: DVec3, target: DVec3) -> Self {
         let backward = (eye - target).normalize();
         let right = DVec3::Y.cross(backward).normalize();
@@ -23,16 +23,16 @@ impl Pose {
     }
 }
 
-/// What a camera sees of the space before it.
+/// Describes what a camera sees of the space before it.
 #[derive(Clone, Copy, Debug)]
 pub enum Lens {
-    /// Sides as tangents of angles (left, right, bottom, top), which need not be symmetric; `far` may be infinite.
+    /// Has sides as tangents of angles (left, right, bottom, top), which need not be symmetric; `far` may be infinite.
     Perspective {
         sides: [f64; 4],
         near: f64,
         far: f64,
     },
-    /// Sides in world units.
+    /// Has sides in world units.
     Orthographic {
         sides: [f64; 4],
         near: f64,
@@ -44,12 +44,12 @@ pub enum Lens {
 pub struct Camera {
     pub pose: Pose,
     pub lens: Lens,
-    /// Near 1 and far 0 in place of near 0 and far 1.
+    /// States that depth is 1 at the near and 0 at the far plane instead of 0 and 1.
     pub reversed: bool,
 }
 
 impl Camera {
-    /// A symmetric perspective camera with an infinite reversed depth range, as modern engines have it.
+    /// Returns a symmetric perspective camera with an infinite reversed depth range, as modern engines have it.
     pub fn modern(eye: DVec3, target: DVec3, fov_y: f64, aspect: f64) -> Self {
         let top = (fov_y * 0.5).tan();
         Self {
@@ -71,7 +71,7 @@ impl Camera {
             (right + left) / (right - left),
             (top + bottom) / (top - bottom),
         );
-        // Depth before the division by w: `a * z + b` with z negative in front of the eye.
+        // This is the depth before the division by w: `a * z + b` with z negative in front of the camera.
         let (a, b) = match (perspective, self.reversed, far.is_finite()) {
             (true, false, true) => (far / (near - far), near * far / (near - far)),
             (true, false, false) => (-1.0, -near),
@@ -103,7 +103,7 @@ impl Camera {
         DMat4::from_mat3_translation(rotation, -(rotation * self.pose.eye))
     }
 
-    /// The matrices as an engine passes them.
+    /// Returns the matrices as an engine passes them.
     pub fn view(&self) -> CameraView {
         CameraView::new(
             self.view_from_render().as_mat4(),
@@ -111,7 +111,8 @@ impl Camera {
         )
     }
 
-    /// The ray through a place of the picture, both coordinates in 0..1: its start and its direction per unit of depth.
+    /// Returns the ray through a position of the image, whose coordinates are in 0..1: its start, and its direction per
+    /// unit of depth.
     pub fn ray(&self, across: f64, up: f64) -> (DVec3, DVec3) {
         let (sides, perspective, ..) = self.parts();
         let [left, right, bottom, top] = sides;
@@ -126,8 +127,8 @@ impl Camera {
         }
     }
 
-    /// Is a point in the picture, nearer than `limit` along the view, and not within `margin` (a share of the picture and of
-    /// the depth) of its borders?
+    /// Returns whether a point is in the image, nearer than `limit` along the view, and not within `margin` (a fraction
+    /// of the image and of the depth) of its borders.
     pub fn sees(&self, point: DVec3, limit: f64, margin: f64) -> bool {
         let (sides, perspective, near, far) = self.parts();
         let [left, right, bottom, top] = sides;
@@ -152,8 +153,8 @@ impl Camera {
     }
 }
 
-/// The matrices and the rays say the same: a point along a ray is projected back to where the ray started, inside the depth
-/// range, and its depth runs the right way.
+/// Matrices and rays agree: a point along a ray is projected back to where the ray started, inside the depth range, and
+/// its depth changes in the right direction.
 #[test]
 fn rays_project_to_their_pixels() {
     let pose = Pose::looking_at(DVec3::new(3.0, 5.0, -7.0), DVec3::new(-1.0, 0.5, 2.0));

@@ -1,13 +1,14 @@
-//! Tests in a process of their own: a driver that crashes there fails one test, and the run goes on.
+//! Runs tests in processes of their own: a driver that crashes there fails one test, and the run continues.
 
 use std::process::Command;
 
 const MARK: &str = "SHADOW_TEST_CHILD";
 
-/// Runs `body` in a child process, with `variables` in its environment, and returns the count that it came to.
+/// Runs `body` in a child process, with `variables` in its environment, and returns the count that it returned.
 ///
-/// `test` is the full name of the test that calls this: the child is this very binary, told to run that test alone, and there
-/// the call runs `body`. What the child wrote is part of the panic where it fails, crashes, or runs nothing.
+/// `test` is the full name of the test that calls this. The child is this same binary, which is told to run that test
+/// alone; there the call runs `body`. If the child fails, crashes, or runs nothing, its output is part of the panic
+/// message.
 pub fn counted(
     test: &str,
     variables: &[(&str, &str)],

@@ -1,4 +1,5 @@
-//! One scene on a device that draws the six faces of a point light in one pass, and on one that draws a pass for each.
+//! Holds one scene on a device that draws the six faces of a point light in one pass, and on one that draws a pass for
+//! each.
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
@@ -16,7 +17,7 @@ use crate::support::scene::Mesh;
 pub const MAP: u32 = 128;
 pub const LIGHT: DVec3 = DVec3::new(0.1, 0.2, -0.3);
 
-/// A mesh that says how many triangles it has and whether every view sees the same of it.
+/// Is a mesh that reports a chosen number of triangles and whether it is the same in every view.
 pub struct Told {
     pub mesh: MeshCaster,
     pub triangles: u32,
@@ -50,14 +51,14 @@ impl ShadowCaster for Told {
     }
 }
 
-/// What a mesh is drawn with.
+/// Describes how a mesh is drawn.
 #[derive(Clone, Copy, Default)]
 pub struct Look {
     pub transform: Mat4,
     pub cull: Option<wgpu::Face>,
 }
 
-/// Meshes around a light, on one device.
+/// Holds meshes around a light, on one device.
 pub struct Stage<'a> {
     pub gpu: &'a Gpu,
     pub shadow: OmniShadow,
@@ -68,7 +69,7 @@ pub struct Stage<'a> {
 }
 
 impl<'a> Stage<'a> {
-    /// Each caster claims one triangle, so that one pass is the cheaper way wherever one can do it.
+    /// Makes the stage. Each caster reports one triangle, so that one pass is the cheaper way wherever it is possible.
     pub fn new(gpu: &'a Gpu, meshes: &[(Mesh, Look)]) -> Self {
         let descriptor = OmniShadowDescriptor {
             map_size: MAP,
@@ -135,7 +136,7 @@ impl<'a> Stage<'a> {
     }
 }
 
-/// The same scene on a device that draws six views at once, and on one that does not.
+/// Holds the same scene on a device that draws six views at once, and on one that does not.
 pub struct Pair {
     pub one: Stage<'static>,
     pub six: Stage<'static>,
@@ -154,7 +155,8 @@ impl Pair {
         change(&mut self.six);
     }
 
-    /// Records both; every layer that holds a map must hold the same bits. Returns how many texels something was drawn into, too.
+    /// Records both and asserts that every layer that has a map contains the same bits. Also returns how many texels
+    /// something was drawn into.
     pub fn compare(&mut self, name: &str, light: DVec3) -> ([ShadowReport; 2], usize) {
         let reports = [self.one.record(light), self.six.record(light)];
         let [one, six] = &reports;
@@ -172,14 +174,14 @@ impl Pair {
         (reports, filled)
     }
 
-    /// The same, of something to see.
+    /// Records both as `compare` does, and asserts that something was drawn.
     pub fn record(&mut self, name: &str, light: DVec3) -> [ShadowReport; 2] {
         let (reports, filled) = self.compare(name, light);
         assert!(filled > 100, "{name}: {filled} texels are no picture");
         reports
     }
 
-    /// Records both, one of them in one pass where the driver is right, in a pass each where it is not.
+    /// Records both, one of them in one pass where the driver is correct, and in a pass each where it is not.
     pub fn record_in_one_pass(&mut self, name: &str, light: DVec3) -> [ShadowReport; 2] {
         let reports = self.record(name, light);
         let passes = [reports[0].passes, reports[1].passes];
@@ -203,7 +205,7 @@ pub fn room() -> Mesh {
     Mesh::cuboid(Vec3::splat(-6.0), Vec3::new(5.0, 6.0, 7.0))
 }
 
-/// Walls on all sides, and a thing before each of them.
+/// Returns walls on all sides, and an object before each of them.
 pub fn furnished() -> Vec<(Mesh, Look)> {
     let sides = [Vec3::X, Vec3::Y, Vec3::Z].into_iter();
     let things = sides.flat_map(|side| [side, -side]).map(|side| {
@@ -217,7 +219,8 @@ pub fn furnished() -> Vec<(Mesh, Look)> {
     [plain(room())].into_iter().chain(things).collect()
 }
 
-/// Things of many triangles across several faces: around the light, at corners and edges of the cube, in front of each other.
+/// Returns objects of many triangles across several faces: around the light, at corners and edges of the cube, and in
+/// front of each other.
 pub fn straddling() -> Vec<(Mesh, Look)> {
     let mut meshes = vec![plain(Mesh::sphere(Vec3::new(0.4, -0.1, 0.2), 4.5, 24))];
     for corner in 0..8 {
@@ -229,7 +232,7 @@ pub fn straddling() -> Vec<(Mesh, Look)> {
     meshes
 }
 
-/// A room, and things beyond its walls that it hides.
+/// Returns a room, and objects beyond its walls, which hide them.
 pub fn behind() -> Vec<(Mesh, Look)> {
     let mut meshes = vec![plain(room())];
     for side in [Vec3::X, Vec3::Y, Vec3::Z] {
@@ -239,7 +242,7 @@ pub fn behind() -> Vec<(Mesh, Look)> {
     meshes
 }
 
-/// Solids of which only one side is drawn, mirrored and not.
+/// Returns solids of which only one side is drawn, mirrored and not.
 pub fn culled() -> Vec<(Mesh, Look)> {
     let mirror = Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0));
     let mut meshes = straddling();

@@ -1,6 +1,6 @@
-//! Measurements in words, compared as far as two machines agree.
+//! Compares measurements in words as far as two machines agree.
 
-/// Words, and the numbers between them with the worth of two in their last place.
+/// Returns the words, and the numbers between them with the value of two in their last digit.
 fn parts(text: &str) -> (Vec<&str>, Vec<(f64, f64)>) {
     let (mut words, mut numbers) = (Vec::new(), Vec::new());
     let mut rest = text;
@@ -34,18 +34,18 @@ fn parts(text: &str) -> (Vec<&str>, Vec<(f64, f64)>) {
     (words, numbers)
 }
 
-/// The same words, and figures as near as two machines give them.
+/// Returns whether the words are the same, and the figures as near as two machines give them.
 pub fn agree(written: &str, measured: &str) -> bool {
     let ((words, figures), (other_words, others)) = (parts(written), parts(measured));
     let near = |((a, step), (b, other_step)): (&(f64, f64), &(f64, f64))| {
         let (low, high) = (a.min(*b), a.max(*b));
-        // A tenth of a step for the rounding of the steps themselves.
+        // A tenth of a step allows for the rounding of the steps themselves.
         high <= 1.5 * low || high - low <= 1.1 * step.max(*other_step)
     };
     words == other_words && figures.iter().zip(&others).all(near)
 }
 
-/// What the comparison forgives, and what it does not.
+/// This states what the comparison accepts, and what it does not.
 #[test]
 fn figures_are_told_apart() {
     let pairs = [

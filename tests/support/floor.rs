@@ -1,4 +1,4 @@
-//! Pictures of a floor by an engine's own shader that asks a set of lights.
+//! Draws images of a floor by an engine's own shader that samples a set of lights.
 
 use image::RgbaImage;
 use wgpu_shadows::{ShadowBindings, ShadowBindingsDescriptor};
@@ -8,11 +8,11 @@ use crate::support::lights::{Kind, Light};
 use crate::support::picture::{COLOR, color_pass, color_target};
 use crate::support::readback;
 
-/// Pixels per side.
+/// Is the number of pixels per side.
 pub const SIZE: u32 = 24;
 
-/// The mean visibility of the lights over the floor of `support/lights.rs`, seen from above. The lights are in `group`, and in
-/// each group before it are so many uniform buffers of the engine's.
+/// Draws the mean visibility of the lights over the floor of `support/lights.rs`, seen from above. The lights are in
+/// `group`, and each group before it has `buffers` uniform buffers of the engine.
 pub fn picture(
     gpu: &Gpu,
     lights: &[(Kind, Box<dyn Light>)],
@@ -46,7 +46,7 @@ pub fn picture(
             format!("{slot} var<uniform> own_{group}_{binding}: vec4<f32>;\n")
         })
         .collect();
-    // The engine's buffers hold zeros, which a compiler cannot know.
+    // The engine's buffers contain zeros, which a compiler cannot know.
     let zeros: String = own
         .iter()
         .map(|(group, binding)| format!(" + own_{group}_{binding}.x"))
@@ -70,8 +70,8 @@ pub fn picture(
     draw(gpu, &pipeline, &groups)
 }
 
-/// A vertex stage that covers the target, and a fragment stage that shows `value`, a WGSL expression over `position` on the
-/// floor.
+/// Returns a vertex stage that covers the target, and a fragment stage that shows `value`, a WGSL expression over
+/// `position` on the floor.
 pub fn stages(value: &str) -> String {
     format!(
         "

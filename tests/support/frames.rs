@@ -1,4 +1,4 @@
-//! Frames of one light each, with a scene of their own: what most tests need of a frame, in one value.
+//! Provides frames of one light each, with a scene of their own: what most tests need of a frame, in one value.
 
 use glam::DVec3;
 use wgpu_shadows::{
@@ -7,14 +7,14 @@ use wgpu_shadows::{
     pool::PoolLight, pool::SpotShadowPool, report::ShadowReport,
 };
 
-/// What the maps of a directional light are to cover.
+/// Selects what the maps of a directional light cover.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Coverage {
     Bounds(Aabb),
     Camera(CameraView),
 }
 
-/// A frame of a directional light.
+/// Is a frame of a directional light.
 #[derive(Clone, Copy)]
 pub struct DirectionalFrame<'a> {
     pub origin: DVec3,
@@ -24,7 +24,7 @@ pub struct DirectionalFrame<'a> {
     pub receivers: &'a [Aabb],
 }
 
-/// A frame of a spot light; without a camera, everything counts.
+/// Is a frame of a spot light; without a camera, everything counts.
 #[derive(Clone, Copy)]
 pub struct SpotFrame<'a> {
     pub origin: DVec3,
@@ -34,7 +34,7 @@ pub struct SpotFrame<'a> {
     pub receivers: &'a [Aabb],
 }
 
-/// A frame of a point light; without a camera, everything counts.
+/// Is a frame of a point light; without a camera, everything counts.
 #[derive(Clone, Copy)]
 pub struct OmniFrame<'a> {
     pub origin: DVec3,
@@ -44,7 +44,7 @@ pub struct OmniFrame<'a> {
     pub receivers: &'a [Aabb],
 }
 
-/// A frame of a pool; without a camera, everything counts.
+/// Is a frame of a pool; without a camera, everything counts.
 #[derive(Clone, Copy)]
 pub struct PoolFrame<'a, L> {
     pub origin: DVec3,
@@ -55,7 +55,7 @@ pub struct PoolFrame<'a, L> {
     pub max_views: Option<u32>,
 }
 
-/// A light that records frames of its own kind.
+/// Is a light that records frames of its own kind.
 pub trait RecordFrame<F> {
     fn record_frame(
         &mut self,
@@ -89,7 +89,7 @@ impl RecordFrame<DirectionalFrame<'_>> for DirectionalShadow {
     }
 }
 
-/// The four kinds of local light differ in what `record` takes.
+/// Implements the trait for a kind of local light. The four kinds differ in what `record` takes.
 macro_rules! record_local {
     ($light:ty, $frame:ty, |$self:ident, $encoder:ident, $checked:ident, $given:ident| $record:expr) => {
         impl RecordFrame<$frame> for $light {

@@ -1,8 +1,8 @@
-//! Pictures compared with references in `tests/golden`.
+//! Compares images with references in `tests/golden`.
 //!
-//! Three limits together: a pixel *fails* where a channel differs by more than `channel`, which forgives the last bits of
-//! another driver's arithmetic; few may fail, which forgives edges that fall on another pixel; and the mean difference catches
-//! what is faint and everywhere.
+//! Three limits apply together. A pixel *fails* where a channel differs by more than `channel`, which allows for the
+//! last bits of another driver's arithmetic. Few pixels may fail, which allows for edges that fall on another pixel.
+//! The mean difference detects what is faint and everywhere.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,18 +11,18 @@ use image::{Rgba, RgbaImage};
 
 use crate::support::gpu::Gpu;
 
-/// What a picture may differ by.
+/// Limits the difference of an image.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
-    /// Difference of a channel beyond which a pixel fails, in 1/255.
+    /// Is the difference of a channel beyond which a pixel fails, in 1/255.
     pub channel: u8,
-    /// Pixels that may fail.
+    /// Is the number of pixels that may fail.
     pub failed_pixels: usize,
-    /// Mean difference over all pixels and channels, in 1/255.
+    /// Is the mean difference over all pixels and channels, in 1/255.
     pub mean: f64,
 }
 
-/// What a picture does differ by.
+/// Is the difference of an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
     pub largest: u8,
@@ -53,7 +53,8 @@ fn difference(a: &Rgba<u8>, b: &Rgba<u8>) -> u8 {
     (0..4).map(|k| a.0[k].abs_diff(b.0[k])).max().unwrap_or(0)
 }
 
-/// Fails unless `actual` is `tests/golden/NAME.png` within `limits`. `SHADOW_GOLDEN=update` writes the reference instead.
+/// Fails unless `actual` equals `tests/golden/NAME.png` within `limits`. With `SHADOW_GOLDEN=update` it writes the
+/// reference instead.
 pub fn assert_golden(gpu: &Gpu, name: &str, actual: &RgbaImage, limits: &Limits) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let reference = root.join("tests/golden").join(format!("{name}.png"));
@@ -92,7 +93,7 @@ pub fn assert_golden(gpu: &Gpu, name: &str, actual: &RgbaImage, limits: &Limits)
     }
 }
 
-/// Black where equal, then from blue over green to red with the difference.
+/// Returns an image that is black where both are equal, and goes from blue over green to red with the difference.
 fn colored(a: &RgbaImage, b: &RgbaImage) -> RgbaImage {
     let mut picture = a.clone();
     for (pixel, other) in picture.pixels_mut().zip(b.pixels()) {
@@ -120,7 +121,7 @@ fn write(picture: &RgbaImage, path: &Path) {
     picture.save(path).expect("a writable file");
 }
 
-/// The comparison lets pass what it should and nothing else.
+/// The comparison accepts what it should and nothing else.
 #[test]
 fn each_limit_catches_what_the_others_forgive() {
     let limits = Limits {
@@ -138,10 +139,10 @@ fn each_limit_catches_what_the_others_forgive() {
     };
     let same = judge(&|_, _| 0);
     assert_eq!((same.largest, same.failed_pixels, same.mean), (0, 0, 0.0));
-    // The last bit of a tenth of the pixels, and a handful of pixels on edges.
+    // These are the last bit of a tenth of the pixels, and a handful of pixels on edges.
     assert!(judge(&|x, y| i16::from((x + 64 * y) % 10 == 0)).is_within(&limits));
     assert!(judge(&|x, y| if y == 0 && x < 8 { 100 } else { 0 }).is_within(&limits));
-    // A row that moved; a faint veil over everything; a small patch that is plainly wrong.
+    // These are a row that moved, a faint change of everything, and a small patch that is clearly wrong.
     assert!(!judge(&|_, y| if y == 9 { 40 } else { 0 }).is_within(&limits));
     assert!(!judge(&|_, _| -1).is_within(&limits));
     assert!(!judge(&|x, y| if x < 3 && y < 3 { 3 } else { 0 }).is_within(&limits));

@@ -1,32 +1,32 @@
-//! One device for all tests of the run, loud about every error that nobody asked for.
+//! Provides one device for all tests of the run, which reports every error that no test expects.
 
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-/// A device, its queue, and the words by which a failure names the machine it happened on.
+/// Holds a device, its queue, and the words by which a failure names the machine on which it happened.
 pub struct Gpu {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
     pub adapter: wgpu::AdapterInfo,
-    /// One submission at a time: the OpenGL backend gives up when it waits long for its only context.
+    /// Allows one submission at a time: the OpenGL backend gives up when it waits long for its only context.
     submitting: Mutex<()>,
 }
 
-/// What to ask of an instance and of a device, beyond the defaults.
+/// Describes what an instance and a device need beyond the defaults.
 #[derive(Default)]
 pub struct GpuRequest {
     pub features: wgpu::Features,
     pub limits: wgpu::Limits,
-    /// The backend; none for the one that the run is on.
+    /// Is the backend; `None` for that of the run.
     pub backend: Option<wgpu::Backends>,
 }
 
-/// The shared device.
+/// Returns the shared device.
 pub fn gpu() -> &'static Gpu {
     static SHARED: OnceLock<Gpu> = OnceLock::new();
     SHARED.get_or_init(|| Gpu::new(GpuRequest::default()))
 }
 
-/// A shared Vulkan device, whatever the run is on: for what wgpu's OpenGL backend cannot do.
+/// Returns a shared Vulkan device, whatever the backend of the run, for what wgpu's OpenGL backend cannot do.
 pub fn vulkan() -> &'static Gpu {
     static SHARED: OnceLock<Gpu> = OnceLock::new();
     if gpu().adapter.backend == wgpu::Backend::Vulkan {
@@ -41,18 +41,18 @@ pub fn vulkan() -> &'static Gpu {
 }
 
 impl Gpu {
-    /// A device of its own, for tests that need other features or limits than the default.
+    /// Creates a device of its own, for tests that need other features or limits than the default.
     pub fn new(request: GpuRequest) -> Self {
         let adapter = adapter(&request);
         Self::of(&adapter, &request)
     }
 
-    /// Does the machine have an adapter of one of these backends?
+    /// Returns whether the machine has an adapter of one of these backends.
     pub fn is_there(backends: wgpu::Backends) -> bool {
         !adapters(backends).is_empty()
     }
 
-    /// Two devices of one instance: wgpu tells the objects of one from those of the other.
+    /// Creates two devices of one instance: wgpu distinguishes the objects of one from those of the other.
     pub fn two() -> [Self; 2] {
         let request = GpuRequest::default();
         let adapter = adapter(&request);
@@ -67,7 +67,7 @@ impl Gpu {
             ..Default::default()
         }))
         .unwrap_or_else(|error| panic!("{}: {error}", adapter.get_info().name));
-        // The handler runs on the thread whose call went wrong, so the panic fails that thread's test and no other.
+        // The handler runs on the thread whose call failed, so the panic fails that thread's test and no other.
         device.on_uncaptured_error(Arc::new(|error: wgpu::Error| {
             panic!("uncaptured device error: {error}")
         }));
@@ -79,7 +79,7 @@ impl Gpu {
         }
     }
 
-    /// "name (driver) over backend", for messages.
+    /// Returns "name (driver) over backend", for messages.
     pub fn describe(&self) -> String {
         let info = &self.adapter;
         format!("{} ({}) over {}", info.name, info.driver_info, info.backend)
@@ -90,7 +90,7 @@ impl Gpu {
             .create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
     }
 
-    /// Submits what `encoder` holds and waits until the device has done it.
+    /// Submits the commands of `encoder` and waits until the device has executed them.
     pub fn submit(&self, encoder: wgpu::CommandEncoder) {
         let _turn = self.turn();
         let index = self.queue.submit([encoder.finish()]);
@@ -102,7 +102,7 @@ impl Gpu {
             .expect("the device finishes its work");
     }
 
-    /// A buffer that holds `contents`.
+    /// Creates a buffer that contains `contents`.
     pub fn buffer(
         &self,
         contents: &[impl bytemuck::NoUninit],
@@ -117,7 +117,7 @@ impl Gpu {
             })
     }
 
-    /// A shader module from WGSL.
+    /// Creates a shader module from WGSL.
     pub fn shader(&self, source: &str) -> wgpu::ShaderModule {
         self.device
             .create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -127,7 +127,7 @@ impl Gpu {
     }
 
     fn turn(&self) -> MutexGuard<'_, ()> {
-        // A test that panicked while it held the turn has left nothing half done.
+        // A test that panicked while it held the lock has left nothing half done.
         self.submitting
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
@@ -137,7 +137,7 @@ impl Gpu {
 fn adapter(request: &GpuRequest) -> wgpu::Adapter {
     let backends = request.backend.unwrap_or_else(backends);
     let adapters = adapters(backends);
-    // A software adapter gives every machine the same pixels, so it comes first.
+    // A software adapter gives every machine the same pixels, so it is preferred.
     let software =
         |adapter: &&wgpu::Adapter| adapter.get_info().device_type == wgpu::DeviceType::Cpu;
     adapters

@@ -1,4 +1,4 @@
-//! One light of every kind over the same small scene, for tests of what all kinds have in common.
+//! Provides one light of every kind over the same small scene, for tests of what all kinds have in common.
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
@@ -17,7 +17,7 @@ use crate::support::gpu::Gpu;
 use crate::support::probe::record;
 use crate::support::scene::{Mesh, Scene};
 
-/// A light, whichever kind it is.
+/// Is a light of any kind.
 pub trait Light {
     fn maps(&self) -> &ShadowMaps;
 }
@@ -41,14 +41,14 @@ light!(
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// A sun with so many cascades, which give way to each other over a tenth of their width or end at once.
+    /// Is a sun with that many cascades, which blend into each other over a tenth of their width or end at once.
     Sun {
         cascades: u32,
         blends: bool,
     },
     Spot,
     Lamp,
-    /// The light is in both of two slots.
+    /// Is a pool of spot lights in which the light is in both of two slots.
     Spots,
     Lamps,
 }
@@ -73,12 +73,12 @@ impl Kind {
         Self::Lamps,
     ];
 
-    /// Does the kind take filters that look along directions?
+    /// Returns whether the kind accepts direction-space filters.
     pub fn has_cube(self) -> bool {
         matches!(self, Self::Lamp | Self::Lamps)
     }
 
-    /// The WGSL that asks a light of this kind for its visibility.
+    /// Returns the WGSL that samples a light of this kind.
     pub fn call(self, name: &str, position: &str, normal: &str) -> String {
         let index = match self {
             Self::Spots | Self::Lamps => "1u, ",
@@ -87,7 +87,7 @@ impl Kind {
         format!("shadow_{name}({index}{position}, {normal})")
     }
 
-    /// The light without any frame: everything is lit.
+    /// Returns the light without any frame: everything is lit.
     pub fn blank(self, gpu: &Gpu, map_size: u32, filter: Filter, bias: Bias) -> Box<dyn Light> {
         let device = &gpu.device;
         match self {
@@ -105,9 +105,9 @@ impl Kind {
         }
     }
 
-    /// The light over `stage`, after one frame.
+    /// Returns the light over `stage`, after one frame.
     pub fn lit(self, gpu: &Gpu, stage: &Scene, filter: Filter, bias: Bias) -> Box<dyn Light> {
-        // No multiple of what pictures have, so that no pixel lies between two texels.
+        // The size is not a multiple of that of the images, so that no pixel lies between two texels.
         const MAP_SIZE: u32 = 97;
         let (device, casters) = (&gpu.device, stage.list());
         let sun = DirectionalLight::new(Vec3::new(0.5, -1.0, 0.3));
@@ -197,18 +197,18 @@ impl Kind {
     }
 }
 
-/// A floor of four by four units around the origin, and a box on it, aside of the middle.
+/// Returns a floor of four by four units around the origin, and a box on it, beside the middle.
 pub fn stage(gpu: &Gpu) -> Scene {
     let solid = Mesh::cuboid(Vec3::new(-0.9, 0.0, -0.8), Vec3::new(-0.1, 0.9, 0.4));
     Scene::new(gpu, &[Mesh::floor(0.0, 2.0), solid])
 }
 
-/// Where the local lights are.
+/// Is the position of the local lights.
 const PLACE: DVec3 = DVec3::new(-1.2, 2.6, -0.6);
 
 const EVERYWHERE: [Aabb; 1] = [Aabb::new(Vec3::splat(-9.0), Vec3::splat(9.0))];
 
-/// A camera that sees the whole floor: what the cascades of suns are for.
+/// Returns a camera that sees the whole floor, which the cascades of suns cover.
 pub fn camera() -> Camera {
     Camera::modern(DVec3::new(0.4, 4.0, 4.5), DVec3::ZERO, 0.9, 1.0)
 }

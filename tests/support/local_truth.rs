@@ -1,4 +1,4 @@
-//! What a ray caster in f64 says of the shadows of a light at a place, away from their edges.
+//! Computes the shadows of a local light by a ray caster in f64, away from their edges.
 
 use glam::DVec3;
 
@@ -6,23 +6,24 @@ use crate::support::probe::Point;
 use crate::support::random::Random;
 use crate::support::scene::Triangle;
 
-/// Receivers whose truth is the same over the whole footprint of a lookup.
+/// Holds receivers whose truth is the same over the whole footprint of a lookup.
 #[derive(Default)]
 pub struct Settled {
     pub points: Vec<Point>,
     pub dark: Vec<bool>,
-    /// Receivers left out because an edge of a shadow, or of the surface, crosses their footprint.
+    /// Counts the receivers that were omitted because an edge of a shadow, or of the surface, crosses their footprint.
     pub at_edges: usize,
 }
 
 impl Settled {
-    /// How many are dark, and how many lit.
+    /// Returns how many are dark, and how many are lit.
     pub fn counts(&self) -> [usize; 2] {
         let dark = self.dark.iter().filter(|dark| **dark).count();
         [dark, self.dark.len() - dark]
     }
 
-    /// Every answer is the truth, give or take the rounding of a sum of at most 64 weights, sharpened three times.
+    /// Asserts that every visibility is the truth, up to the rounding of a sum of at most 64 weights, sharpened three
+    /// times.
     pub fn assert_agrees(&self, seen: &[f32], name: &str) {
         for ((point, dark), seen) in self.points.iter().zip(&self.dark).zip(seen) {
             let wanted = if *dark { 0.0 } else { 1.0 };
@@ -34,9 +35,9 @@ impl Settled {
     }
 }
 
-/// `count` receivers on the lit sides of `triangles`, of which those remain that are settled: the ray through the receiver
-/// and sixteen rays around it, `tangent` (the tangent of an angle) aside, meet the receiver's plane at places that are all
-/// dark or all lit.
+/// Returns those of `count` receivers on the lit sides of `triangles` that are settled: the ray through the receiver
+/// and sixteen rays around it, at an angle whose tangent is `tangent`, meet the receiver's plane at positions that are
+/// all dark or all lit.
 pub fn settled(
     triangles: &[Triangle],
     light: DVec3,
@@ -52,7 +53,7 @@ pub fn settled(
         let to_light = light - place;
         let normal = triangle.normal() * triangle.normal().dot(to_light).signum();
         let facing = normal.dot(to_light.normalize());
-        // Surfaces nearly edge on see their footprint stretched over all that is around them.
+        // On surfaces nearly edge-on the footprint extends over everything around them.
         if facing < 0.1 || !wanted(place) {
             continue;
         }
@@ -83,7 +84,7 @@ pub fn settled(
     settled
 }
 
-/// Does anything lie between `point` and the light?
+/// Returns whether anything lies between `point` and the light.
 fn hides(triangles: &[Triangle], point: DVec3, light: DVec3) -> bool {
     let between = 1e-7..1.0;
     triangles

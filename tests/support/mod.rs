@@ -1,4 +1,5 @@
-//! What several tests share: a device, small scenes with their truth, and ways to ask the library for its answers.
+//! Contains what several tests share: a device, small scenes with their truth, and probes that sample the library's
+//! lights.
 
 pub mod ask;
 pub mod camera;

@@ -1,10 +1,10 @@
-//! Devices that draw several views at once.
+//! Provides devices that draw several views at once.
 
 use std::sync::OnceLock;
 
 use crate::support::gpu::{Gpu, GpuRequest, vulkan};
 
-/// A shared Vulkan device with six views a pass. OpenGL has none in wgpu.
+/// Returns a shared Vulkan device with six views per pass. wgpu has no multiview on OpenGL.
 pub fn device() -> &'static Gpu {
     static SHARED: OnceLock<Gpu> = OnceLock::new();
     SHARED.get_or_init(|| {
@@ -19,13 +19,13 @@ pub fn device() -> &'static Gpu {
     })
 }
 
-/// The same adapter without.
+/// Returns a device of the same adapter without multiview.
 pub fn portable() -> &'static Gpu {
     vulkan()
 }
 
-/// False where the driver is a llvmpipe that draws clipped triangles into wrong layers. A run that was given another driver says
-/// so by `SHADOW_TEST_MULTIVIEW=required`, and fails if it did not get it.
+/// Returns false where the driver is a llvmpipe that draws clipped triangles into wrong layers. A run with another
+/// driver sets `SHADOW_TEST_MULTIVIEW=required`, and fails if it did not get that driver.
 pub fn is_right() -> bool {
     let info = &device().adapter;
     let version = info.driver_info.strip_prefix("Mesa ").unwrap_or_default();

@@ -1,15 +1,15 @@
-//! Small colour targets to draw into.
+//! Creates small targets to draw into.
 
 use crate::support::gpu::Gpu;
 
 pub const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// A square colour texture that can be read back.
+/// Creates a square colour texture that can be read back.
 pub fn color_target(gpu: &Gpu, size: u32) -> wgpu::Texture {
     texture(gpu, size, COLOR, wgpu::TextureUsages::COPY_SRC)
 }
 
-/// A depth texture of the same size.
+/// Creates a depth texture of the same size.
 pub fn depth_target(gpu: &Gpu, size: u32) -> wgpu::Texture {
     let format = wgpu::TextureFormat::Depth32Float;
     texture(gpu, size, format, wgpu::TextureUsages::empty())
@@ -37,7 +37,7 @@ fn texture(
     })
 }
 
-/// A pass over `target`, cleared to opaque black.
+/// Begins a pass over `target`, cleared to opaque black.
 pub fn color_pass<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
     target: &wgpu::Texture,
@@ -45,7 +45,7 @@ pub fn color_pass<'a>(
     pass(encoder, target, None)
 }
 
-/// The same with a depth attachment, cleared to 1.
+/// Begins such a pass with a depth attachment, cleared to 1.
 pub fn scene_pass<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
     target: &wgpu::Texture,

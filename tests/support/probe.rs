@@ -1,4 +1,4 @@
-//! Asks the library's WGSL for visibilities, from a compute shader in place of an engine's fragment shader.
+//! Samples the library's WGSL from a compute shader instead of an engine's fragment shader.
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
@@ -9,7 +9,7 @@ use crate::support::frames::{DirectionalFrame, RecordFrame};
 use crate::support::gpu::Gpu;
 use crate::support::readback;
 
-/// A receiver: a place and the geometric normal there, laid out as the shader reads it.
+/// Is a receiver: a position and the geometric normal there, laid out as the shader reads it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Point {
@@ -29,20 +29,22 @@ impl Point {
         }
     }
 
-    /// Rounded to what an engine would pass.
+    /// Returns the receiver, rounded to what an engine would pass.
     pub fn rounded(position: DVec3, normal: DVec3) -> Self {
         Self::new(position.as_vec3(), normal.as_vec3())
     }
 }
 
-/// A compute pipeline that answers one value per point: group 0 is its own, group 1 whatever its WGSL declares there.
+/// Holds a compute pipeline that returns one value per point: group 0 is its own, and group 1 is what its WGSL declares
+/// there.
 pub struct PointShader {
     pipeline: wgpu::ComputePipeline,
     points_layout: wgpu::BindGroupLayout,
 }
 
 impl PointShader {
-    /// `value` is a WGSL expression over `point.position` and `point.normal`, of type `value_type`.
+    /// Creates the pipeline. `value` is a WGSL expression over `point.position` and `point.normal`, of type
+    /// `value_type`.
     pub fn new(
         gpu: &Gpu,
         declarations: &str,
@@ -107,7 +109,7 @@ fn ask(@builtin(global_invocation_id) id: vec3<u32>) {{
         }
     }
 
-    /// One answer per point.
+    /// Returns one value per point.
     pub fn ask<T: bytemuck::Pod>(
         &self,
         gpu: &Gpu,
@@ -147,7 +149,8 @@ fn ask(@builtin(global_invocation_id) id: vec3<u32>) {{
     }
 }
 
-/// Asks one directional light through `ShadowBindings`, as an engine would. Outlives every frame of the light.
+/// Samples one directional light through `ShadowBindings`, as an engine would. It remains valid in every frame of the
+/// light.
 pub struct SunProbe {
     bindings: ShadowBindings,
     shader: PointShader,
@@ -174,7 +177,7 @@ impl SunProbe {
         Self { bindings, shader }
     }
 
-    /// Visibility of the light from each point, under the map of the last submitted frame.
+    /// Returns the visibility of the light from each point, under the map of the last submitted frame.
     pub fn ask(&self, gpu: &Gpu, points: &[Point]) -> Vec<f32> {
         self.shader.ask(gpu, self.bindings.bind_group(), points)
     }

@@ -1,8 +1,8 @@
-//! Random numbers that are the same on every run and every machine.
+//! Provides random numbers that are the same on every run and every machine.
 
 use glam::DVec3;
 
-/// SplitMix64 (Steele, Lea and Flood 2014): one word of state, good enough to scatter points.
+/// Is SplitMix64 (Steele, Lea and Flood 2014): one word of state, good enough to scatter points.
 pub struct Random(u64);
 
 impl Random {
@@ -18,7 +18,7 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// Evenly in `0.0..1.0`.
+    /// Returns a number that is uniform in `0.0..1.0`.
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
@@ -31,7 +31,7 @@ impl Random {
         (self.unit() * count as f64) as usize
     }
 
-    /// Evenly in a box.
+    /// Returns a point that is uniform in a box.
     pub fn point(&mut self, low: DVec3, high: DVec3) -> DVec3 {
         DVec3::new(
             self.range(low.x, high.x),
@@ -40,7 +40,7 @@ impl Random {
         )
     }
 
-    /// Evenly over the unit sphere.
+    /// Returns a direction that is uniform over the unit sphere.
     pub fn direction(&mut self) -> DVec3 {
         let y = self.range(-1.0, 1.0);
         let angle = self.range(0.0, std::f64::consts::TAU);

@@ -1,4 +1,4 @@
-//! Random scenes under random suns before random cameras, and what the truth says of their floors.
+//! Provides random scenes under random suns before random cameras, and the truth about their floors.
 
 use glam::{DVec2, DVec3, Vec3};
 use proptest::prelude::*;
@@ -14,10 +14,11 @@ use crate::support::probe::record;
 use crate::support::random::Random;
 use crate::support::scene::{Mesh, Scene};
 
-/// Half the width of the floor, which lies at height 0.
+/// Is half the width of the floor, which lies at height 0.
 pub const FLOOR_HALF: f64 = 32.0;
 
-/// Boxes on and above a level floor. Coordinates are whole 64ths, so that shifts and scales by powers of two are exact.
+/// Describes boxes on and above a level floor. Coordinates are whole 64ths, so that shifts and scales by powers of two
+/// are exact.
 #[derive(Clone, Debug)]
 pub struct World {
     pub boxes: Vec<(DVec3, DVec3)>,
@@ -26,7 +27,7 @@ pub struct World {
     pub max_distance: f64,
     pub cascades: u32,
     pub split: CascadeSplit<'static>,
-    /// The floor casts as well as receives, or only receives.
+    /// States that the floor casts as well as receives; otherwise it only receives.
     pub floor_casts: bool,
 }
 
@@ -38,7 +39,7 @@ fn boxes() -> impl Strategy<Value = Vec<(DVec3, DVec3)>> {
     let one = (
         (-20.0..20.0, -20.0..20.0),
         (0.5..7.0, 0.3..6.0, 0.5..7.0),
-        // On the floor, a little above it, or high up.
+        // Boxes are on the floor, a little above it, or high up.
         prop_oneof![Just(0.0), 0.1..6.0, 6.0..60.0],
     );
     let corners = one.prop_map(|((x, z), (width, height, depth), base)| {
@@ -58,7 +59,7 @@ fn camera() -> impl Strategy<Value = Camera> {
     )
         .prop_map(|((x, y, z), (target_x, target_z))| {
             let eye = DVec3::new(whole(x), whole(y), whole(z));
-            // A little off the vertical, where the head would have no direction.
+            // The camera looks slightly off the vertical, along which its orientation would be undefined.
             Pose::looking_at(eye, DVec3::new(target_x + 0.03, 0.0, target_z + 0.02))
         });
     let size = || 0.15..1.2_f64;
@@ -98,7 +99,7 @@ pub fn world() -> impl Strategy<Value = World> {
         Just(CascadeSplit::Uniform),
         Just(CascadeSplit::Practical { lambda: 0.6 }),
     ];
-    // From 12 degrees above the horizon to the zenith, from all sides.
+    // The light comes from 12 degrees above the horizon to the zenith, from all sides.
     let light = (0.2..1.57, 0.0..std::f64::consts::TAU).prop_map(|(height, side): (f64, f64)| {
         DVec3::new(
             height.cos() * side.cos(),
@@ -131,7 +132,8 @@ pub fn world() -> impl Strategy<Value = World> {
         )
 }
 
-/// A world as an engine sees it whose render space begins at `origin` and counts in `1 / scale` of the world's units.
+/// Holds a world as an engine sees it whose render space begins at `origin` and counts in `1 / scale` of the world's
+/// units.
 pub struct Placed {
     pub shadow: DirectionalShadow,
     pub report: ShadowReport,
@@ -147,7 +149,7 @@ impl Placed {
 }
 
 impl World {
-    /// Builds and records the world. `coverage` is given render-space coordinates of the whole scene.
+    /// Builds and records the world. `coverage` is called with the render-space bounds of the whole scene.
     pub fn place(
         &self,
         gpu: &Gpu,
@@ -197,7 +199,7 @@ impl World {
         }
     }
 
-    /// What the camera sees, in a render space that is the world times `scale`.
+    /// Returns what the camera sees, in a render space that is the world times `scale`.
     pub fn camera_view(&self, scale: f64) -> CameraView {
         let mut camera = self.camera;
         camera.pose.eye *= scale;
@@ -217,8 +219,8 @@ impl World {
             .with_max_distance((self.max_distance * scale) as f32)
     }
 
-    /// Places of the floor that the camera sees and that its limit keeps: under a grid of `side` by `side` pixels, and as many
-    /// again in and around the shadows of the boxes. What boxes hide counts as seen.
+    /// Returns positions of the floor that the camera sees within its distance limit: under a grid of `side` by `side`
+    /// pixels, and as many again in and around the shadows of the boxes. What boxes hide counts as seen.
     pub fn visible_floor(&self, side: u32) -> Vec<DVec3> {
         let mut places = Vec::new();
         for pixel in 0..side * side {
@@ -228,7 +230,7 @@ impl World {
         }
         places.extend(self.floor_around_shadows(side * side));
         places.retain(|place| {
-            // Off the very border of the picture, where f32 matrices decide what is visible.
+            // The outermost border of the image is excluded, where f32 matrices decide what is visible.
             self.camera.sees(*place, self.max_distance, 0.001)
                 && place.abs().max_element() < FLOOR_HALF * 0.999
         });
@@ -238,7 +240,7 @@ impl World {
         places
     }
 
-    /// Places of the floor in and around the shadows of the boxes.
+    /// Returns positions of the floor in and around the shadows of the boxes.
     pub fn floor_around_shadows(&self, count: u32) -> Vec<DVec3> {
         let mut random = Random::new(41);
         (0..count)
@@ -251,7 +253,8 @@ impl World {
             .collect()
     }
 
-    /// What the truth says of a place on the floor, if the same is so for `margin` texels all around it as the light sees it.
+    /// Returns the truth for a position on the floor, if it is the same for `margin` texels all around as the light
+    /// sees it.
     pub fn truth(&self, place: DVec3, texel: f64, margin: f64) -> Option<bool> {
         let (across, up) = self.light.any_orthonormal_pair();
         let on_map = |world: DVec3| DVec2::new(across.dot(world), up.dot(world)) / texel;
@@ -269,7 +272,7 @@ impl World {
                 on_map(DVec3::new(pick(0), pick(1), pick(2)))
             });
             let outside = distance_outside(&hull(corners.collect()), center);
-            // A box darkens a whole kernel only where it stands higher than the kernel's own extent along the floor.
+            // A box darkens a whole kernel only where it is higher than the kernel's own extent along the floor.
             let extent = self.light.with_y(0.0).length() * texel * margin * 1.5;
             if outside < -margin && high.y > extent {
                 return Some(true);
@@ -280,7 +283,7 @@ impl World {
     }
 }
 
-/// Convex hull, counter-clockwise (Andrew's monotone chain).
+/// Returns the convex hull, counter-clockwise (Andrew's monotone chain).
 fn hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
     points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     let mut chain: Vec<DVec2> = Vec::new();
@@ -304,7 +307,8 @@ fn hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
     chain
 }
 
-/// How far a place lies outside a convex polygon: at most its distance outside, exactly minus its distance inside.
+/// Returns how far a position lies outside a convex polygon: at most its distance outside, exactly minus its distance
+/// inside.
 fn distance_outside(hull: &[DVec2], place: DVec2) -> f64 {
     let next = hull.iter().cycle().skip(1);
     hull.iter()

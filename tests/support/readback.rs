@@ -1,8 +1,8 @@
-//! Textures and buffers back on the CPU.
+//! Copies textures and buffers back to the CPU.
 
 use crate::support::gpu::Gpu;
 
-/// One layer of a depth texture, rows from the top.
+/// Returns one layer of a depth texture, rows from the top.
 ///
 /// A compute shader gathers the texels: the OpenGL backend neither copies nor loads from depth textures.
 pub fn depth_layer(gpu: &Gpu, texture: &wgpu::Texture, layer: u32) -> Vec<f32> {
@@ -69,14 +69,14 @@ const DEPTH_SHADER: &str = "
 fn read(@builtin(global_invocation_id) id: vec3<u32>) {
     let size = textureDimensions(map);
     if all(id.xy < size) {
-        // Where four texels meet, of which the last component is the upper left one.
+        // This is the corner where four texels meet; the last component of the gather is the upper left one.
         let corner = vec2<f32>(id.xy + 1u) / vec2<f32>(size);
         depths[id.y * size.x + id.x] = textureGather(map, point_sampler, corner, layer.x).w;
     }
 }
 ";
 
-/// A zeroed buffer that a shader may write and [`buffer`] may read.
+/// Creates a zeroed buffer that a shader may write and [`buffer`] may read.
 pub fn storage(gpu: &Gpu, size: u64) -> wgpu::Buffer {
     gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("test output"),
@@ -86,7 +86,7 @@ pub fn storage(gpu: &Gpu, size: u64) -> wgpu::Buffer {
     })
 }
 
-/// What a buffer created with `COPY_SRC` holds.
+/// Returns the contents of a buffer created with `COPY_SRC`.
 pub fn buffer<T: bytemuck::Pod>(gpu: &Gpu, source: &wgpu::Buffer) -> Vec<T> {
     let staging = staging(gpu, source.size());
     let mut encoder = gpu.encoder();
@@ -95,7 +95,7 @@ pub fn buffer<T: bytemuck::Pod>(gpu: &Gpu, source: &wgpu::Buffer) -> Vec<T> {
     bytemuck::pod_collect_to_vec(&mapped(gpu, &staging))
 }
 
-/// An `Rgba8Unorm` texture created with `COPY_SRC`.
+/// Returns the pixels of an `Rgba8Unorm` texture created with `COPY_SRC`.
 pub fn rgba8(gpu: &Gpu, texture: &wgpu::Texture) -> image::RgbaImage {
     let (width, height) = (texture.width(), texture.height());
     let bytes_per_row = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
@@ -135,7 +135,7 @@ fn mapped(gpu: &Gpu, staging: &wgpu::Buffer) -> Vec<u8> {
     staging.map_async(wgpu::MapMode::Read, .., move |result| {
         let _ = sender.send(result);
     });
-    // Another thread's poll may be the one that calls back, so the channel is what is waited for.
+    // The call-back may come from another thread's poll, so this waits for the channel.
     loop {
         gpu.device
             .poll(wgpu::PollType::wait_indefinitely())

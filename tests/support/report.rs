@@ -1,8 +1,8 @@
-//! What every report must be.
+//! Checks what holds for every report.
 
 use wgpu_shadows::report::ShadowReport;
 
-/// No figure of a report is NaN, and shares are shares.
+/// Asserts that no figure of a report is NaN, and that fractions are in 0..=1.
 pub fn assert_whole(report: &ShadowReport, what: &str) {
     for view in &report.views {
         let mut numbers = vec![

@@ -1,9 +1,9 @@
-//! How far f32 arithmetic may take a receiver from its f64 twin, term by term.
+//! Bounds how far f32 arithmetic may take a receiver from its CPU reference in f64, term by term.
 //!
-//! With u = 2^-24, a sum of k products in f32 errs by at most k·u times the sum of their magnitudes to first order, fused or
-//! not. Every bound below has that form, with the counts of `wgsl/view.wgsl` and `wgsl/bias_*.wgsl` rounded up: 6 where a
-//! row of a matrix meets a vector (four products, and one rounding each for the vector's own entries and for the division by
-//! w, which is one).
+//! With u = 2^-24, a sum of k products in f32 errs by at most k·u times the sum of their magnitudes to first order,
+//! fused or not. Every bound below has that form, with the counts of `wgsl/view.wgsl` and `wgsl/bias_*.wgsl` rounded
+//! up: 6 where a row of a matrix is multiplied by a vector (four products, and one rounding each for the vector's own
+//! entries and for the division by w, which is one).
 
 use glam::{DVec2, DVec3, Mat4, Vec3, Vec4};
 use wgpu_shadows::reference::Receiver;
@@ -11,10 +11,10 @@ use wgpu_shadows::{Bias, Filter, ShadowViewUniform};
 
 use crate::support::view_member::member;
 
-/// Unit roundoff of f32.
+/// Is the unit roundoff of f32.
 pub const U: f64 = 1.0 / (1u64 << 24) as f64;
 
-/// Bounds of a receiver's errors.
+/// Bounds the errors of a receiver.
 #[derive(Clone, Copy, Debug)]
 pub struct Band {
     pub texel: DVec2,
@@ -22,8 +22,8 @@ pub struct Band {
     pub gradient: DVec2,
 }
 
-/// The band of the receiver that `bias` makes of `position` and `normal`, both as f32 values; none where the receiver is so
-/// nearly edge on that its gradient has no significant digit.
+/// Returns the band of the receiver that `bias` makes of `position` and `normal`, both as f32 values; `None` where the
+/// receiver is so nearly edge-on that its gradient has no significant digit.
 pub fn band(
     view: &ShadowViewUniform,
     filter: Filter,
@@ -40,9 +40,9 @@ pub fn band(
     let magnitude = normal.abs().extend(2.0 * normal.abs().dot(relative.abs()));
     let plane = DVec3::from_array(rows.map(|row| row.dot(homogeneous)));
     let plane_error = DVec3::from_array(rows.map(|row| 6.0 * U * row.abs().dot(magnitude)));
-    // How far the bias moves the receiver in world units, and the error of that.
+    // This is how far the bias moves the receiver in world units, and the error of that.
     let (moved, moved_error) = match bias {
-        // A product of three factors, one of them a sum of two plane components.
+        // This is a product of three factors, one of them a sum of two plane components.
         Bias::Auto | Bias::NormalOffset => {
             let texels = number("offset_texels") + number("lateral_error");
             let moved = texels * (plane.x.abs() + plane.y.abs());
@@ -51,7 +51,7 @@ pub fn band(
                 texels * (plane_error.x + plane_error.y) + 6.0 * U * moved,
             )
         }
-        // A normalisation (a reciprocal root within two ulps), a product, and the cosine's own four roundings.
+        // This is a normalisation (a reciprocal root within two ulps), a product, and the cosine's own four roundings.
         _ => {
             let moved = number("manual_constant") + 2.0 * number("manual_slope");
             (moved, 16.0 * U * moved)
@@ -67,7 +67,7 @@ pub fn band(
     let texel = DVec2::new(place_error(0), place_error(1));
     let follows = matches!(bias, Bias::Auto) && filter.compares_each_texel();
     let gradient = if follows {
-        // A quotient: the errors of both sides, relative to the divisor.
+        // This is a quotient: the errors of both sides, relative to the divisor.
         let divisor = plane.z.abs() - plane_error.z;
         if divisor <= 0.0 {
             return None;
@@ -89,8 +89,8 @@ pub fn band(
 }
 
 impl Band {
-    /// Error of the reference depth at the farthest texel of the kernel: the receiver's own, the gradient's over the kernel's
-    /// reach, that of the place from which the gradient starts, and four roundings of the sum.
+    /// Returns the error of the reference depth at the farthest texel of the kernel: the receiver's own, the gradient's
+    /// over the kernel's reach, that of the position from which the gradient starts, and four roundings of the sum.
     pub fn reference_depth(&self, filter: Filter, receiver: &Receiver) -> f64 {
         let reach = filter.reach_texels() + 0.5;
         let steep = receiver.gradient.abs();

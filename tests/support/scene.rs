@@ -1,4 +1,4 @@
-//! Small generated meshes, as casters for the library and as triangles in f64 for the truth.
+//! Provides small generated meshes, as casters for the library and as triangles in f64 for the truth.
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
@@ -8,7 +8,7 @@ use wgpu_shadows::{
 
 use crate::support::gpu::Gpu;
 
-/// An indexed triangle list; outward faces are counter-clockwise.
+/// Is an indexed triangle list; outward faces are counter-clockwise.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
     pub positions: Vec<Vec3>,
@@ -16,7 +16,7 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// A closed box.
+    /// Returns a closed box.
     pub fn cuboid(min: Vec3, max: Vec3) -> Self {
         let positions = (0..8)
             .map(|corner| {
@@ -30,7 +30,7 @@ impl Mesh {
                 Vec3::new(pick(0), pick(1), pick(2))
             })
             .collect();
-        // Each row: the four corners of a face, counter-clockwise from outside.
+        // Each row lists the four corners of a face, counter-clockwise from outside.
         let faces: [[u32; 4]; 6] = [
             [0, 4, 6, 2],
             [1, 3, 7, 5],
@@ -46,7 +46,7 @@ impl Mesh {
         Self { positions, indices }
     }
 
-    /// A flat sheet of two triangles that faces `u × v`.
+    /// Returns a flat sheet of two triangles that faces `u × v`.
     pub fn sheet(corner: Vec3, u: Vec3, v: Vec3) -> Self {
         Self {
             positions: vec![corner, corner + u, corner + u + v, corner + v],
@@ -54,7 +54,7 @@ impl Mesh {
         }
     }
 
-    /// A level square floor at height `y`, half as wide as `half`, that faces up.
+    /// Returns a level square floor at height `y` that extends `half` from the middle and faces up.
     pub fn floor(y: f32, half: f32) -> Self {
         Self::sheet(
             Vec3::new(-half, y, -half),
@@ -63,7 +63,7 @@ impl Mesh {
         )
     }
 
-    /// A closed sphere of `rings` by `2 * rings` patches.
+    /// Returns a closed sphere of `rings` by `2 * rings` patches.
     pub fn sphere(center: Vec3, radius: f32, rings: u32) -> Self {
         let columns = 2 * rings;
         let mut mesh = Self::default();
@@ -99,7 +99,7 @@ impl Mesh {
         Aabb::from_points(self.positions.iter().copied())
     }
 
-    /// The triangles in render space.
+    /// Returns the triangles in render space.
     pub fn triangles(&self, render_from_model: &Mat4) -> Vec<Triangle> {
         let matrix = render_from_model.as_dmat4();
         let corner =
@@ -110,7 +110,7 @@ impl Mesh {
             .collect()
     }
 
-    /// A caster of this mesh.
+    /// Creates a caster of this mesh.
     pub fn caster(&self, gpu: &Gpu, pipeline: &CasterPipeline, transform: Mat4) -> MeshCaster {
         MeshCaster::new(
             &gpu.device,
@@ -132,7 +132,7 @@ impl Mesh {
     }
 }
 
-/// Casters of the default pipeline, and the triangles they consist of.
+/// Holds casters of the default pipeline, and the triangles of which they consist.
 pub struct Scene {
     pub casters: Vec<MeshCaster>,
     pub triangles: Vec<Triangle>,
@@ -161,7 +161,7 @@ impl Scene {
     }
 }
 
-/// The default pipeline, for maps of both depth formats.
+/// Creates the default pipeline, for maps of both depth formats.
 pub fn default_pipeline(gpu: &Gpu) -> CasterPipeline {
     let descriptor = CasterPipelineDescriptor {
         depth_formats: &[DepthFormat::Float32, DepthFormat::Unorm16],
@@ -170,7 +170,7 @@ pub fn default_pipeline(gpu: &Gpu) -> CasterPipeline {
     CasterPipeline::new(&gpu.device, &descriptor).expect("a valid pipeline")
 }
 
-/// A triangle in render space, f64.
+/// Is a triangle in render space, in f64.
 #[derive(Clone, Copy, Debug)]
 pub struct Triangle(pub [DVec3; 3]);
 
@@ -180,14 +180,14 @@ impl Triangle {
         (b - a).cross(c - a).normalize()
     }
 
-    /// The point with barycentric coordinates made from two numbers in 0..1, evenly spread.
+    /// Returns the point with barycentric coordinates made from two numbers in 0..1, evenly spread.
     pub fn point(&self, s: f64, t: f64) -> DVec3 {
         let [a, b, c] = self.0;
         let root = s.sqrt();
         a * (1.0 - root) + b * (root * (1.0 - t)) + c * (root * t)
     }
 
-    /// Distance along a ray at which it hits, both sides alike (Möller and Trumbore 1997).
+    /// Returns the distance along a ray at which it hits the triangle, from either side (Möller and Trumbore 1997).
     pub fn hit(&self, from: DVec3, direction: DVec3) -> Option<f64> {
         let [a, b, c] = self.0;
         let (edge_b, edge_c) = (b - a, c - a);
@@ -204,7 +204,7 @@ impl Triangle {
     }
 }
 
-/// The truth: does anything lie between `point` and the light, farther than `skip` along the way?
+/// Returns the truth: whether anything lies between `point` and the light, farther than `skip` along the ray.
 pub fn occluded(triangles: &[Triangle], point: DVec3, toward_light: DVec3, skip: f64) -> bool {
     triangles
         .iter()

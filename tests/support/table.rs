@@ -1,9 +1,11 @@
-//! The table of hard cases, `doc/hard_cases.md`: what is expected, and what the suite measured on each backend.
+//! Compares the table of hard cases, `doc/hard_cases.md`, with what the suite measured: the table states what is
+//! expected, and what was measured on each backend.
 //!
-//! Every row is compared as its test measures it, so it holds for runs of a single test and in whatever order tests run. The
-//! words must be the same; figures may differ by a factor of 1.5 or by two in their last place, for other processors and driver
-//! versions round differently. On adapters that are no software, cases and expectations alone are compared, and so where the
-//! number of inputs is not the default run's. `SHADOW_HARD_CASES=update` writes the table instead, one backend's column a run.
+//! Every row is compared as its test measures it, so it holds for runs of a single test and in whatever order tests
+//! run. The words must be the same; figures may differ by a factor of 1.5 or by two in their last digit, since other
+//! processors and driver versions round differently. On adapters that are not software, only cases and expectations are
+//! compared, and so where the number of inputs is not that of the default run. `SHADOW_HARD_CASES=update` writes the
+//! table instead, one backend's column per run.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -12,7 +14,7 @@ use std::sync::{Mutex, PoisonError};
 use crate::support::figures::agree;
 use crate::support::gpu::{Gpu, gpu};
 
-/// Headings, each with the test files whose cases stand below it.
+/// Lists the headings, each with the test files whose cases are below it.
 const TOPICS: [(&str, &[&str]); 8] = [
     ("Lit surfaces", &["self_shadow", "light_axes", "creases"]),
     ("Contact", &["contact", "wall_foot", "layers"]),
@@ -87,13 +89,13 @@ struct Row {
     topic: usize,
     case: String,
     expectation: String,
-    /// On Vulkan and on OpenGL.
+    /// Holds what was measured on Vulkan and on OpenGL.
     measured: [String; 2],
 }
 
 #[derive(Default)]
 struct Table {
-    /// What each column was measured on.
+    /// Names the machine on which each column was measured.
     machines: [String; 2],
     rows: Vec<Row>,
 }
@@ -110,7 +112,7 @@ fn is_update() -> bool {
     std::env::var("SHADOW_HARD_CASES").as_deref() == Ok("update")
 }
 
-/// Another number of inputs, other seeds or more frames than the table is of.
+/// Returns whether this run has another number of inputs, other seeds or more frames than the run of the table.
 fn is_another_run() -> bool {
     ["PROPTEST_CASES", "PROPTEST_RNG_SEED", "SHADOW_LONG"]
         .iter()
@@ -180,7 +182,7 @@ impl Table {
         text
     }
 
-    /// Takes a row's cells, and keeps the other backend's.
+    /// Replaces a row's cells, and keeps those of the other backend.
     fn put(&mut self, topic: usize, case: &str, expectation: &str, column: usize, measured: &str) {
         let old = self.rows.iter().position(|row| row.case == case);
         let mut row = match old {
@@ -199,7 +201,7 @@ impl Table {
         self.rows.sort_by(|a, b| a.case.cmp(&b.case));
     }
 
-    /// Why the table is not what was measured, if it is not.
+    /// Returns why the table differs from what was measured, if it does.
     fn fault(
         &self,
         case: &str,
@@ -222,8 +224,8 @@ impl Table {
     }
 }
 
-/// Compares what a test has measured with its row of the table, or writes it there. Call it last, so that the table never holds
-/// what was not as expected. The case is a literal, named by one test only.
+/// Compares what a test has measured with its row of the table, or writes it there. Tests call it last, so that the
+/// table never contains unexpected results. The case is a literal that one test only names.
 #[track_caller]
 pub fn record(case: &str, expectation: &str, measured: impl AsRef<str>) {
     let measured = measured.as_ref();
@@ -265,8 +267,8 @@ pub fn record(case: &str, expectation: &str, measured: impl AsRef<str>) {
     }
 }
 
-/// Every case of the table is recorded by one test, and no row is left from a case that is gone. (Reads the tests, for a run may
-/// be of a few of them.)
+/// Every case of the table is recorded by one test, and no row is left from a case that was removed. (It reads the
+/// tests' sources, since a run may include only a few of them.)
 #[test]
 fn every_row_has_its_test() {
     fn sources(folder: &Path, found: &mut Vec<(PathBuf, String)>) {
@@ -306,7 +308,7 @@ fn every_row_has_its_test() {
     }
 }
 
-/// What is written is read again, and what is not as measured is told.
+/// What is written can be read again, and differences from what was measured are found.
 #[test]
 fn the_table_keeps_what_it_is_given() {
     let mut table = Table::default();

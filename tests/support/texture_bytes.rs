@@ -1,4 +1,4 @@
-//! All layers of a texture as bytes, by a copy: fast enough for thousands of frames, but not on OpenGL.
+//! Reads all layers of a texture as bytes, by a copy: fast enough for thousands of frames, but not available on OpenGL.
 
 use crate::support::gpu::Gpu;
 
@@ -9,7 +9,7 @@ pub struct TextureBytes {
 }
 
 impl TextureBytes {
-    /// For rows of a multiple of 256 bytes.
+    /// Makes a reader for rows of a multiple of 256 bytes.
     pub fn new(gpu: &Gpu, texture: &wgpu::Texture) -> Self {
         let texel = match texture.format() {
             wgpu::TextureFormat::Depth16Unorm => 2,
@@ -44,7 +44,7 @@ impl TextureBytes {
         );
     }
 
-    /// What was copied by commands that the device has done, layer by layer.
+    /// Returns what commands that the device has executed have copied, layer by layer.
     pub fn read(&self, gpu: &Gpu) -> Vec<Vec<u8>> {
         let slice = self.buffer.slice(..);
         slice.map_async(wgpu::MapMode::Read, |mapped| {

@@ -1,4 +1,4 @@
-//! Pictures of triangles through any camera and any fragment stage.
+//! Draws images of triangles through any camera and any fragment stage.
 
 use glam::Vec3;
 use image::RgbaImage;
@@ -8,14 +8,14 @@ use crate::support::gpu::Gpu;
 use crate::support::picture::{COLOR, color_target, depth_target, scene_pass};
 use crate::support::readback;
 
-/// Pixels per side.
+/// Is the number of pixels per side.
 pub const SIZE: u32 = 128;
 
-/// What a fragment stage finds before it: the uniform `eye` and its argument's type.
+/// Precedes a fragment stage: the uniform `eye` and the type of its argument.
 pub const VERTEX: &str = "
 struct Eye {
     clip_from_render: mat4x4<f32>,
-    // Of an orthographic camera the direction toward it, with w = 0; of a perspective one its place, with w = 1.
+    // Is the direction toward an orthographic camera, with w = 0, or the position of a perspective one, with w = 1.
     place: vec4<f32>,
 }
 @group(0) @binding(0) var<uniform> eye: Eye;
@@ -31,7 +31,7 @@ fn vertex(@location(0) position: vec3<f32>) -> Varying {
 }
 ";
 
-/// A picture of triangles, with the lights in group 1 if there are any.
+/// Draws an image of triangles, with the lights in group 1 if there are any.
 pub fn draw(
     gpu: &Gpu,
     source: &str,

@@ -1,10 +1,10 @@
-//! A caster that watches what the library does with it, and lies where a test wants it to.
+//! Is a caster that records what the library does with it, and returns wrong values where a test needs them.
 
 use std::cell::Cell;
 
 use wgpu_shadows::{Aabb, CasterPipeline, MeshCaster, Revision, ShadowCaster, ShadowView};
 
-/// A mesh that counts how often it is drawn, with a revision and bounds of the test's choice.
+/// Is a mesh that counts how often it is drawn, with a revision and bounds that the test chooses.
 pub struct Watched {
     pub mesh: MeshCaster,
     pub revision: Option<Option<Revision>>,

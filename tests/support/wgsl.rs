@@ -1,11 +1,11 @@
-//! WGSL as text and as naga sees it.
+//! Parses WGSL as text and by naga.
 
 use std::collections::BTreeSet;
 
 use crate::support::wgsl_operators::mixed_operators;
 
-/// Parses and validates; the error is naga's own, with the place in the source. Beyond naga, operators must be apart by
-/// parentheses where WGSL's grammar wants them, as browsers insist.
+/// Parses and validates; the error is naga's own, with the position in the source. In addition to naga's checks,
+/// operators must be separated by parentheses where WGSL's grammar requires them, as browsers do.
 pub fn validate(source: &str) -> Result<naga::Module, String> {
     let faults = mixed_operators(source);
     if !faults.is_empty() {
@@ -22,7 +22,7 @@ pub fn validate(source: &str) -> Result<naga::Module, String> {
     Ok(module)
 }
 
-/// The text without line comments; the library's WGSL has no others.
+/// Returns the text without line comments; the library's WGSL has no others.
 pub fn without_comments(source: &str) -> String {
     assert!(!source.contains("/*"), "block comments are not understood");
     source
@@ -31,7 +31,7 @@ pub fn without_comments(source: &str) -> String {
         .fold(String::new(), |text, line| text + line + "\n")
 }
 
-/// Every word outside comments.
+/// Returns every word outside comments.
 pub fn identifiers(source: &str) -> BTreeSet<String> {
     without_comments(source)
         .split(|c: char| !(c.is_alphanumeric() || c == '_'))
@@ -40,14 +40,15 @@ pub fn identifiers(source: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// Names declared at module scope: the word after `fn`, `struct`, `const`, `alias`, `override` or `var` outside all braces.
+/// Returns the names declared at module scope: the word after `fn`, `struct`, `const`, `alias`, `override` or `var`
+/// outside all braces.
 pub fn top_level_names(source: &str) -> BTreeSet<String> {
     let text = without_comments(source);
     let mut names = BTreeSet::new();
     let mut depth = 0;
     let mut word = String::new();
     let mut declares = false;
-    // In `var<uniform> name`, what stands between the angle brackets is no name.
+    // In `var<uniform> name`, the word between the angle brackets is not a name.
     let mut in_template = false;
     for c in text.chars() {
         if c.is_alphanumeric() || c == '_' {

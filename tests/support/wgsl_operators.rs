@@ -1,19 +1,20 @@
-//! WGSL's grammar of binary operators, where naga is more lenient than browsers are.
+//! Checks WGSL's grammar of binary operators, where naga is more lenient than browsers are.
 //!
-//! The operands of `&`, `|` and `^` are unary expressions or the same operator's; those of `<<` and `>>` are unary expressions;
-//! `&&` and `||` take relations and do not mix; relations do not chain. Anything else wants parentheses
+//! The operands of `&`, `|` and `^` are unary expressions or the same operator's; those of `<<` and `>>` are unary
+//! expressions; `&&` and `||` take relations and do not mix; relations do not chain. Anything else needs parentheses
 //! (<https://www.w3.org/TR/WGSL/#expression-grammar>).
 
-/// The operators of each bracket, of each argument between commas, and of each statement are looked at by themselves.
+/// Holds the state of a bracket. The operators of each bracket, of each argument between commas, and of each statement
+/// are checked by themselves.
 #[derive(Default)]
 struct Level {
-    /// Binary operators since the last comma, semicolon, brace or assignment.
+    /// Lists the binary operators since the last comma, semicolon, brace or assignment.
     operators: Vec<String>,
-    /// The last token was the end of an operand, so that an operator after it is binary.
+    /// States that the last token was the end of an operand, so that an operator after it is binary.
     after_operand: bool,
 }
 
-/// Places where the text breaks the grammar, each with its line.
+/// Returns the positions where the text violates the grammar, each with its line.
 pub fn mixed_operators(source: &str) -> Vec<String> {
     let mut faults = Vec::new();
     let mut levels = vec![Level::default()];
@@ -40,7 +41,7 @@ pub fn mixed_operators(source: &str) -> Vec<String> {
                 }
                 "{" | "}" | ";" | "," | ":" | "=" | "->" | "@" => end(level),
                 word if word.len() > 1 && word.ends_with('=') && !is_relation(word) => end(level),
-                // These begin an expression; what follows them is no binary operator.
+                // These begin an expression; what follows them is not a binary operator.
                 "return" | "if" | "while" | "switch" | "case" | "else" => end(level),
                 "++" | "--" => {}
                 operator if is_operator(operator) => {
@@ -59,7 +60,7 @@ pub fn mixed_operators(source: &str) -> Vec<String> {
     faults
 }
 
-/// Two operators that do not go together without parentheses.
+/// Returns two operators that may not be combined without parentheses.
 fn fault(operators: &[String]) -> Option<String> {
     let first = |found: fn(&str) -> bool| operators.iter().find(|operator| found(operator));
     let bitwise = first(|operator| ["&", "|", "^"].contains(&operator));
@@ -67,13 +68,13 @@ fn fault(operators: &[String]) -> Option<String> {
     let logic = first(|operator| ["&&", "||"].contains(&operator));
     let pair = |one: &String, other: &String| Some(format!("`{one}` and `{other}`"));
     if let Some(bitwise) = bitwise {
-        // A binary `&` is an operand of nothing else either: relations and logic are made of shifts and sums.
+        // A binary `&` is an operand of nothing else either: relations and logic consist of shifts and sums.
         return operators
             .iter()
             .find(|operator| *operator != bitwise)
             .and_then(|other| pair(bitwise, other));
     }
-    // Relations and logic take shifts as operands; between two of those each run is looked at by itself.
+    // Relations and logic take shifts as operands; between two of those each run is checked by itself.
     let mut runs = operators.split(|operator| is_relation(operator) || is_logic(operator));
     if let Some(shift) = shift {
         let crowded = runs.find(|run| run.len() > 1 && run.contains(shift));
@@ -119,8 +120,8 @@ const PUNCTUATION: [&str; 23] = [
     "%=", "&=", "|=", "^=", "++", "--", "//", "/*",
 ];
 
-/// Words, numbers and punctuation, line by line, without comments. The angle brackets of template lists become `template<`
-/// and `>template`.
+/// Returns words, numbers and punctuation, line by line, without comments. The angle brackets of template lists become
+/// `template<` and `>template`.
 fn tokens_of_lines(source: &str) -> Vec<Vec<String>> {
     let mut lines = Vec::new();
     let mut comment_depth = 0;
@@ -166,7 +167,8 @@ fn tokens_of_lines(source: &str) -> Vec<Vec<String>> {
     lines
 }
 
-/// Length of the word or number at the start of a text; a number may hold a point and the sign of its exponent.
+/// Returns the length of the word or number at the start of a text; a number may contain a point and the sign of its
+/// exponent.
 fn word_length(text: &str) -> usize {
     let is_number = text.starts_with(|c: char| c.is_ascii_digit());
     let is_hexadecimal = text.starts_with("0x") || text.starts_with("0X");
@@ -184,10 +186,10 @@ fn word_length(text: &str) -> usize {
     length
 }
 
-/// WGSL's own rule (template list discovery): a `<` after a name begins a template list if its `>` comes before any token that
-/// cannot stand in one, with brackets in between skipped.
+/// Applies WGSL's own rule (template list discovery): a `<` after a name begins a template list if its `>` comes before
+/// any token that cannot be in one, with brackets in between skipped.
 fn mark_templates(lines: &mut [Vec<String>]) {
-    // All tokens in one list, each `>>` and `>=` that may close a list taken apart on the way.
+    // This puts all tokens into one list, and splits each `>>` and `>=` that may close a list.
     let mut open: Vec<(usize, usize, usize)> = Vec::new();
     let mut depth = 0;
     let mut last_word = false;

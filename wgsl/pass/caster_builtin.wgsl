@@ -1,10 +1,12 @@
-// The built-in vertex stages of casters. Requires: caster.
+// Contains the built-in vertex stages of casters. Requires: caster.
 
+// Draws positions that are in render space already.
 @vertex
 fn shadow_caster_vertex_identity(@location(0) position: vec3<f32>) -> @builtin(position) vec4<f32> {
     return shadow_caster_clip(position);
 }
 
+// Draws positions that an instance's matrix transforms to render space.
 @vertex
 fn shadow_caster_vertex_instance(
     @location(0) position: vec3<f32>,

@@ -1,5 +1,6 @@
-// The built-in vertex stages of casters, for six faces in one pass. Requires: caster_multiview.
+// Contains the built-in vertex stages of casters for six faces in one multiview pass. Requires: caster_multiview.
 
+// Draws positions that are in render space already.
 @vertex
 fn shadow_caster_vertex_identity(
     @builtin(view_index) face: u32,
@@ -8,6 +9,7 @@ fn shadow_caster_vertex_identity(
     return shadow_caster_face_clip(face, position);
 }
 
+// Draws positions that an instance's matrix transforms to render space.
 @vertex
 fn shadow_caster_vertex_instance(
     @builtin(view_index) face: u32,

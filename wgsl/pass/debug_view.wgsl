@@ -1,10 +1,10 @@
-// Depth maps as grey levels: black at the light, white at the end of its reach and where nothing casts.
+// Draws depth maps as grey levels: black at the light, white at the end of its reach and where nothing casts.
 //
-// Rust twin: src/debug_view.rs. Requires: view, cube_face, fullscreen.
+// CPU counterpart: src/debug/view.rs. Requires: view, cube_face, fullscreen.
 
 struct ShadowDebugView {
-    // x is 1 where depth is near / distance (a local light), 0 where it is linear (a directional one). A vector, since uniforms
-    // are multiples of 16 bytes in OpenGL ES 3.0.
+    // Holds 1 in x where depth is near / distance (a local light), and 0 where it is linear (a directional one). It is
+    // a vector, since uniforms are multiples of 16 bytes in OpenGL ES 3.0.
     local: vec4<u32>,
 }
 
@@ -13,23 +13,23 @@ struct ShadowDebugView {
 @group(0) @binding(2) var shadow_debug_map: texture_2d_array<f32>;
 @group(0) @binding(3) var shadow_debug_sampler: sampler;
 
-// Distance from the light as a share of its reach, for the ray through `texel`.
+// Returns the distance from the light along the ray through `texel`, as a fraction of the light's reach.
 fn shadow_debug_grey(view: ShadowViewUniform, texel: vec2<f32>, ray: vec3<f32>) -> f32 {
     let last = view.map_size - 1.0;
     let inside = clamp(floor(texel), vec2<f32>(0.0), vec2<f32>(last));
     let center = (inside + 0.5) / view.map_size;
-    // A sample and not a gather, which GLSL ES 3.00 lacks, nor a load; see `texels_by_samples`.
+    // This is a sample, since GLSL ES 3.00 has no gather, and since loads fail as `texels_by_samples` describes.
     let depth = textureSampleLevel(shadow_debug_map, shadow_debug_sampler, center, view.layer, 0.0).x;
     if shadow_debug.local.x == 0u {
         return 1.0 - depth;
     }
-    // place.z is the near distance, and depth = near / distance along the axis.
-    let place = view.texel_from_anchor * vec4<f32>(ray, 1.0);
-    let along_axis = place.z / max(depth, 1e-30);
-    return clamp(along_axis * length(ray) / (place.w * view.range), 0.0, 1.0);
+    // homogeneous.z is the near distance, and depth = near / distance along the axis.
+    let homogeneous = view.texel_from_anchor * vec4<f32>(ray, 1.0);
+    let along_axis = homogeneous.z / max(depth, 1e-30);
+    return clamp(along_axis * length(ray) / (homogeneous.w * view.range), 0.0, 1.0);
 }
 
-// One view, the first of the list: the map as it lies in its layer.
+// Draws the first view of the list as it is stored in its layer.
 @fragment
 fn shadow_debug_layer(vertex: ShadowFullscreenVertex) -> @location(0) vec4<f32> {
     let view = shadow_debug_views[0];
@@ -37,7 +37,7 @@ fn shadow_debug_layer(vertex: ShadowFullscreenVertex) -> @location(0) vec4<f32> 
         return vec4<f32>(1.0);
     }
     let texel = vertex.uv * view.map_size;
-    // The ray through the texel: the planes of constant texel x and y through the anchor meet in it.
+    // The planes of constant texel x and of constant texel y through the anchor intersect in the ray through the texel.
     let columns = view.texel_from_anchor;
     let rows = transpose(columns);
     let across = rows[0].xyz - texel.x * rows[3].xyz;
@@ -47,7 +47,8 @@ fn shadow_debug_layer(vertex: ShadowFullscreenVertex) -> @location(0) vec4<f32> 
     return vec4<f32>(vec3<f32>(shadow_debug_grey(view, texel, forward)), 1.0);
 }
 
-// Six faces of a cube unfolded around the one that looks along -z: +y on top, -x left, +x right, +z outermost right, -y below.
+// Draws the six faces of a cube, unfolded around the one that looks along -z: +y above it, -x to the left, +x to the
+// right, +z outermost to the right, and -y below.
 @fragment
 fn shadow_debug_cross(vertex: ShadowFullscreenVertex) -> @location(0) vec4<f32> {
     let cell = vec2<i32>(floor(vertex.uv * vec2<f32>(4.0, 3.0)));
@@ -68,8 +69,8 @@ fn shadow_debug_cross(vertex: ShadowFullscreenVertex) -> @location(0) vec4<f32> 
         return vec4<f32>(vec3<f32>(0.5), 1.0);
     }
     let view = shadow_debug_views[shadow_cube_face(ray)];
-    let place = view.texel_from_anchor * vec4<f32>(ray, 1.0);
-    let texel = place.xy / place.w;
+    let homogeneous = view.texel_from_anchor * vec4<f32>(ray, 1.0);
+    let texel = homogeneous.xy / homogeneous.w;
     let covered = all(texel >= view.inner.xy) && all(texel <= view.inner.zw);
     if !covered {
         return vec4<f32>(1.0);

@@ -1,6 +1,7 @@
-// A pass that gathers from a map, never drawn: whether a device makes its pipeline tells whether its shaders can gather.
+// Gathers from a map, in a pass that is never drawn: whether a device can create its pipeline tells whether its shaders
+// can gather.
 //
-// Rust twin: src/receive/texel_access.rs. Requires: fullscreen.
+// CPU counterpart: src/receive/texel_access.rs. Requires: fullscreen.
 
 @group(0) @binding(0) var shadow_probe_map: texture_depth_2d_array;
 @group(0) @binding(1) var shadow_probe_sampler: sampler;

@@ -1,8 +1,10 @@
 
-// Returns the light's visibility in [0, 1] from a position of render space; 1 where no cascade covers it.
+// Returns the visibility of the light, in [0, 1], from a position in render space. It is 1 where no cascade covers the
+// position.
 //
-// It is the weighted mean of all cascades that cover the position, from near to far. A cascade takes its weight from the share
-// that the cascades before it have left, and takes less of it toward its border. So the mean is continuous across every border.
+// It is the weighted mean of all cascades that cover the position, from near to far. Each cascade takes its weight from
+// the share that the cascades before it have left, and takes less of it toward its border. The mean is therefore
+// continuous across every border.
 fn shadow_NAME(INDEX: u32, position: vec3<f32>, normal: vec3<f32>) -> f32 {
     var lit = 0.0;
     var share = 0.0;

@@ -1,5 +1,6 @@
 
-// Returns the light's visibility in [0, 1] from a position of render space; 1 where no view serves it.
+// Returns the visibility of the light, in [0, 1], from a position in render space. It is 1 where no view covers the
+// position.
 fn shadow_NAME(INDEX: u32, position: vec3<f32>, normal: vec3<f32>) -> f32 {
     let view = shadow_view_NAME(INDEX, position);
     if view == VIEW_COUNT {

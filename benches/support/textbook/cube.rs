@@ -1,4 +1,4 @@
-//! A cube map of distances for a point light.
+//! Implements a cube map of distances for a point light.
 
 use glam::{DMat4, DVec3, DVec4};
 use wgpu_shadows::ShadowError;
@@ -12,19 +12,19 @@ use super::meshes::{
     uniform_layout,
 };
 
-/// Nearest distance of the faces, as in the tutorial.
+/// Is the nearest distance of the faces, as in the tutorial.
 const NEAR: f64 = 1.0;
 
-/// The chapter "Point Shadows" ends with two filters.
+/// Selects one of the two filters with which the chapter "Point Shadows" ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CubeFilter {
-    /// A grid of 4×4×4 offsets, bias 0.05.
+    /// Is a grid of 4×4×4 offsets, with a bias of 0.05.
     Grid,
-    /// 20 fixed directions whose spread grows with the distance from the viewer, bias 0.15.
+    /// Is 20 fixed directions whose spread grows with the distance from the camera, with a bias of 0.15.
     Star,
 }
 
-/// The chapter "Point Shadows".
+/// Implements the chapter "Point Shadows".
 pub struct CubeTechnique<'a> {
     meshes: &'a WorldMeshes,
     filter: CubeFilter,
@@ -38,7 +38,7 @@ pub struct CubeTechnique<'a> {
 }
 
 impl<'a> CubeTechnique<'a> {
-    /// For point lights.
+    /// Makes the technique for point lights.
     pub fn new(
         gpu: &Gpu,
         scene: &Scene,
@@ -159,7 +159,8 @@ impl Technique for CubeTechnique<'_> {
     }
 
     fn band_world(&self) -> f64 {
-        // The corners of the cube of offsets: 0.1 wide, or 1/25 and up to twice that with the distance from the viewer.
+        // These are the corners of the cube of offsets: 0.1 wide, or 1/25 and up to twice that with the distance from
+        // the camera.
         3f64.sqrt()
             * match self.filter {
                 CubeFilter::Grid => 0.1,
@@ -172,7 +173,8 @@ impl Technique for CubeTechnique<'_> {
     }
 }
 
-/// Clip space of the faces +x, -x, +y, -y, +z, -z from coordinates relative to the light, oriented as cube maps are sampled.
+/// Returns the clip space of the faces +x, -x, +y, -y, +z, -z from coordinates relative to the light, oriented as cube
+/// maps are sampled.
 fn cube_faces(far: f64) -> [DMat4; 6] {
     [
         (DVec3::NEG_Z, DVec3::Y, DVec3::X),

@@ -1,8 +1,8 @@
-// The depth pass of a cube map: the fragment's distance from the light in place of its depth.
+// Draws the depth pass of a cube map, which stores the fragment's distance from the light instead of its depth.
 
 struct View {
     clip_from_world: mat4x4<f32>,
-    // Far distance in w.
+    // Has the far distance in w.
     light: vec4<f32>,
     viewer_or_sun: vec4<f32>,
 }

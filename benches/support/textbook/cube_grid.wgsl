@@ -1,5 +1,5 @@
 
-// 64 comparisons on a grid of offsets from -0.1 to 0.05, constant bias.
+// Averages 64 comparisons on a grid of offsets from -0.1 to 0.05, with a constant bias.
 fn shadow_light(position: vec3<f32>, normal: vec3<f32>) -> f32 {
     let from_light = position - view.light.xyz;
     let reference = length(from_light) - 0.05;

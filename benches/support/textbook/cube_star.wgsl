@@ -1,5 +1,6 @@
 
-// 20 comparisons along fixed directions, constant bias, wider with the distance from the viewer.
+// Averages 20 comparisons along fixed directions, with a constant bias and a radius that grows with the distance from
+// the camera.
 fn shadow_light(position: vec3<f32>, normal: vec3<f32>) -> f32 {
     var directions = array<vec3<f32>, 20>(
         vec3<f32>(1.0, 1.0, 1.0), vec3<f32>(1.0, -1.0, 1.0),

@@ -1,4 +1,4 @@
-//! One depth map for a sun or a spot.
+//! Implements one depth map for a sun or a spot light.
 
 use glam::{DMat4, DVec3, DVec4};
 use wgpu_shadows::ShadowError;
@@ -11,10 +11,10 @@ use super::meshes::{
     uniform_layout,
 };
 
-/// Nearest distance of a spot light's map in world units, as in the tutorial.
+/// Is the nearest distance of a spot light's map in world units, as in the tutorial.
 const SPOT_NEAR: f64 = 1.0;
 
-/// The depth pass of one map, and nothing else.
+/// Draws the depth pass of one map, and nothing else.
 pub struct DepthDrawer {
     pipeline: wgpu::RenderPipeline,
     view: wgpu::Buffer,
@@ -42,7 +42,7 @@ impl DepthDrawer {
     }
 }
 
-/// The chapter "Shadow Mapping".
+/// Implements the chapter "Shadow Mapping".
 pub struct FlatTechnique<'a> {
     meshes: &'a WorldMeshes,
     map_size: u32,
@@ -53,7 +53,7 @@ pub struct FlatTechnique<'a> {
 }
 
 impl<'a> FlatTechnique<'a> {
-    /// For suns and spots.
+    /// Makes the technique for suns and spot lights.
     pub fn new(gpu: &Gpu, scene: &Scene, meshes: &'a WorldMeshes, map_size: u32) -> Self {
         let (clip_from_render, sun) = match scene.light {
             Light::Sun { direction, .. } => {
@@ -145,7 +145,7 @@ impl Technique for FlatTechnique<'_> {
     }
 }
 
-/// The scene's bounds as seen along `direction`: -1 to 1 across, depth 0 to 1 away from the light.
+/// Returns the scene's bounds as seen along `direction`: -1 to 1 across, depth 0 to 1 away from the light.
 fn orthographic(scene: &Scene, direction: DVec3) -> DMat4 {
     let light_from_render = looking_along(direction);
     let bounds = scene.bounds();
@@ -164,14 +164,14 @@ fn orthographic(scene: &Scene, direction: DVec3) -> DMat4 {
         (DVec3::INFINITY, DVec3::NEG_INFINITY),
         |(min, max), corner| (min.min(corner), max.max(corner)),
     );
-    // A scene that is flat to the light has no depth.
+    // A scene that is flat as seen from the light has no depth.
     let scale = DVec3::new(2.0, 2.0, -1.0) / (max - min).max(DVec3::splat(1e-9));
     // Light space looks along -z, so the nearest corner has the greatest z.
     let from = DVec3::new((min.x + max.x) * 0.5, (min.y + max.y) * 0.5, max.z);
     DMat4::from_scale(scale) * DMat4::from_translation(-from) * light_from_render
 }
 
-/// A square view of `2 * outer_angle`, standard depth.
+/// Returns a square view of `2 * outer_angle` with standard depth.
 fn perspective(position: DVec3, direction: DVec3, outer_angle: f64, far: f64) -> DMat4 {
     let scale = 1.0 / outer_angle.tan();
     let depth = far / (SPOT_NEAR - far);
@@ -184,7 +184,8 @@ fn perspective(position: DVec3, direction: DVec3, outer_angle: f64, far: f64) ->
     clip_from_light * looking_along(direction) * DMat4::from_translation(-position)
 }
 
-/// Right-handed axes that look along `direction`, as `lookAt` with +Y up; with another up where they look along it.
+/// Returns right-handed axes that look along `direction`, as `lookAt` with +Y up does, and with another up vector where
+/// they look along +Y.
 fn looking_along(direction: DVec3) -> DMat4 {
     let back = -direction.normalize();
     let right = DVec3::Y.cross(back).try_normalize().unwrap_or(DVec3::X);

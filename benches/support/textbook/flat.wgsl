@@ -1,4 +1,5 @@
-// The tutorial's lookup: bias by slope in units of the map's depth, the mean of nine comparisons, lit beyond the border.
+// Samples as the tutorial does: bias by slope in units of the map's depth, the mean of nine comparisons, lit beyond the
+// border.
 
 struct View {
     clip_from_world: mat4x4<f32>,

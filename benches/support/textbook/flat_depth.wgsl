@@ -1,4 +1,4 @@
-// The depth pass of a map with standard depth.
+// Draws the depth pass of a map with standard depth.
 
 struct View {
     clip_from_world: mat4x4<f32>,

@@ -1,4 +1,4 @@
-//! Vertex buffers in world space, and the passes that draw them.
+//! Holds vertex buffers in world space, and draws them in depth passes.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use super::super::scene::Scene;
 
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// The meshes of a scene, at their absolute coordinates as f32 holds them.
+/// Holds the meshes of a scene, at their absolute coordinates as f32 represents them.
 pub struct WorldMeshes {
     meshes: Vec<DrawnMesh>,
 }
@@ -22,14 +22,14 @@ struct DrawnMesh {
     base_vertex: i32,
 }
 
-/// Mirror of `View` in the shaders.
+/// Mirrors `View` in the shaders.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct ViewUniform {
     pub clip_from_world: Mat4,
-    /// Place of a local light; its far distance in w.
+    /// Is the position of a local light, with its far distance in w.
     pub light: Vec4,
-    /// Place of the viewer, or the unit direction toward a sun.
+    /// Is the position of the camera, or the unit direction toward a sun.
     pub viewer_or_sun: Vec4,
 }
 
@@ -48,7 +48,7 @@ impl WorldMeshes {
         Self::of_meshes(gpu, &scene.meshes, scene.origin)
     }
 
-    /// Meshes of a render space that begins at `origin`.
+    /// Makes the meshes of a render space that begins at `origin`.
     pub fn of_meshes(gpu: &Gpu, meshes: &[Mesh], origin: DVec3) -> Self {
         let meshes = meshes.iter().map(|mesh| {
             let positions: Vec<Vec3> = mesh
@@ -68,7 +68,7 @@ impl WorldMeshes {
         }
     }
 
-    /// The same in one pair of buffers, a draw each.
+    /// Makes the same meshes in one pair of buffers, with one draw each.
     pub fn in_shared_buffers(gpu: &Gpu, meshes: &[Mesh]) -> Self {
         let positions: Vec<Vec3> = meshes.iter().flat_map(|m| &m.positions).copied().collect();
         let corners: Vec<u32> = meshes.iter().flat_map(|m| &m.indices).copied().collect();
@@ -96,7 +96,7 @@ impl WorldMeshes {
         self.meshes.len() as u32
     }
 
-    /// A pass that clears `target` to the far plane and draws everything.
+    /// Records a pass that clears `target` to the far plane and draws everything.
     pub fn draw(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -126,7 +126,7 @@ impl WorldMeshes {
     }
 }
 
-/// The depth pipeline of `source`, with a fragment stage where one is named, and the layout of its only group.
+/// Creates the depth pipeline of `source`, with a fragment stage where one is named, and the layout of its only group.
 pub fn depth_pipeline(
     gpu: &Gpu,
     source: &str,
@@ -178,7 +178,7 @@ pub fn depth_pipeline(
     (pipeline, view_layout)
 }
 
-/// A layout of one uniform at binding 0, followed by `others`.
+/// Creates a layout of one uniform at binding 0, followed by `others`.
 pub fn uniform_layout(
     gpu: &Gpu,
     visibility: wgpu::ShaderStages,
@@ -205,7 +205,7 @@ pub fn uniform_layout(
         })
 }
 
-/// A bind group of `resources` at bindings 0, 1, ...
+/// Creates a bind group of `resources` at bindings 0, 1, ...
 pub fn bind_group(
     gpu: &Gpu,
     layout: &wgpu::BindGroupLayout,
@@ -225,7 +225,7 @@ pub fn bind_group(
     })
 }
 
-/// The map, its sampler as the tutorial has it (nearest), and the binding types of both.
+/// Creates the map, its sampler as the tutorial has it (nearest), and the binding types of both.
 pub fn map_with_sampler(gpu: &Gpu, map_size: u32, layers: u32) -> (wgpu::Texture, wgpu::Sampler) {
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("textbook map"),
@@ -247,7 +247,7 @@ pub fn map_with_sampler(gpu: &Gpu, map_size: u32, layers: u32) -> (wgpu::Texture
     (texture, sampler)
 }
 
-/// Binding types of a map of this dimension and of its sampler.
+/// Returns the binding types of a map of this dimension and of its sampler.
 pub fn map_binding_types(view_dimension: wgpu::TextureViewDimension) -> [wgpu::BindingType; 2] {
     [
         wgpu::BindingType::Texture {

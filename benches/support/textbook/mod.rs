@@ -1,10 +1,11 @@
-//! The baseline: the shadow-mapping chapters of learnopengl.com, as they are written there, on the same device.
+//! Implements the baseline: the shadow-mapping chapters of learnopengl.com, as they are written there, on the same
+//! device.
 //!
-//! Nothing is tuned, nothing is taken from the library: standard depth, whole scene in one map, the tutorial's own constants
-//! in the tutorial's own units, and coordinates in world space.
+//! Nothing is tuned, and nothing is taken from the library: depth is standard, one map covers the whole scene, the
+//! constants are the tutorial's own in its own units, and coordinates are in world space.
 //!
 //! ```text
-//! flat.rs    one map: orthographic for a sun, perspective for a spot; bias by slope, mean of 3x3 comparisons
+//! flat.rs    one map: orthographic for a sun, perspective for a spot light; bias by slope, mean of 3x3 comparisons
 //! cube.rs    distance from a point light in a cube map; 64 or 20 comparisons
 //! meshes.rs  vertex buffers and depth passes
 //! ```

@@ -1,4 +1,4 @@
-//! Cascades meet without a seam, and each shows what is true.
+//! Tests that cascades meet without a seam, and that each shows the truth.
 
 use glam::DVec3;
 use wgpu_shadows::reference::receiver;
@@ -15,7 +15,7 @@ use crate::support::view_member::member;
 
 const LIGHT: DVec3 = DVec3::new(0.5, -1.0, 0.35);
 
-/// Rows of boxes to the horizon, over a floor that only receives, before a camera that looks along them.
+/// Returns rows of boxes to the horizon, over a floor that only receives, before a camera that looks along them.
 fn avenue() -> (World, Vec<Mesh>) {
     let camera = Camera::modern(
         DVec3::new(-1.0, 2.6, -9.0),
@@ -38,7 +38,7 @@ fn avenue() -> (World, Vec<Mesh>) {
     (world, meshes)
 }
 
-/// Places of the floor that the camera sees, and the layer that each is looked up in.
+/// Returns the layer with which a position on the floor is sampled.
 fn layer_of(sun: &Sun, place: DVec3) -> Option<usize> {
     let position = place.as_vec3().as_dvec3();
     let filter = Filter::default();
@@ -76,9 +76,10 @@ fn cascaded(cascades: u32, split: CascadeSplit, world: &World, meshes: &[Mesh]) 
     sun
 }
 
-/// With 1 to 8 cascades and every split, receivers all over the picture are as dark as the truth says, wherever it is the same
-/// for three texels of their own cascade around. Along lines into the depth, where one cascade hands over to the next, the
-/// answers on both sides of the border agree unless an edge lies within three of the coarser texels: no seam.
+/// With 1 to 8 cascades and every split, receivers all over the image are as dark as the ray-traced truth, wherever it
+/// is the same for three texels of their own cascade around. Along lines into the depth, where one cascade ends and the
+/// next begins, the visibilities on both sides of the border agree unless an edge lies within three of the coarser
+/// texels: there is no seam.
 #[test]
 fn every_cascade_shows_the_truth_and_borders_are_no_seams() {
     let (world, meshes) = avenue();

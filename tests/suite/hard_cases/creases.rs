@@ -1,4 +1,4 @@
-//! Where two planes meet: a ridge does not shadow itself, and a valley only within the kernel of its crease.
+//! Tests where two planes meet: a ridge does not shadow itself, and a valley only within the kernel of its crease.
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{Aabb, Bias, DirectionalShadowDescriptor, Filter};
@@ -13,7 +13,8 @@ use crate::support::scene::{Mesh, Triangle};
 
 const LENGTH: f64 = 4.0;
 
-/// Two planes that meet in a line along `along` and fall away from it by `slopes` (negative: rise, a valley).
+/// Describes two planes that meet in a line along `along` and descend from it by `slopes` (negative ones ascend, as in
+/// a valley).
 struct Crease {
     name: String,
     along: DVec3,
@@ -47,7 +48,8 @@ impl Crease {
         }
     }
 
-    /// Receivers on both sides, and their distances from the crease as the light sees it. Normals face up, where the light is.
+    /// Returns receivers on both sides, and their distances from the crease as the light sees it. Normals face up,
+    /// where the light is.
     fn receivers(&self, random: &mut Random) -> Vec<(Point, f64)> {
         (0..1200)
             .filter_map(|index| {
@@ -57,7 +59,7 @@ impl Crease {
                 if -normal.dot(self.light) < 0.02 {
                     return None;
                 }
-                // Most of them near the crease, and none near its ends, where sheets end.
+                // Most of them are near the crease, and none near its ends, where the sheets end.
                 let place = triangle.point(random.unit(), random.unit());
                 let along = self.along * place.dot(self.along);
                 let place = along + (place - along) * random.unit().powi(3);
@@ -72,7 +74,7 @@ impl Crease {
             .collect()
     }
 
-    /// Do both sides face the light? Else one truly shadows the other, or itself.
+    /// Returns whether both sides face the light. Otherwise one truly shadows the other, or itself.
     fn both_lit(&self) -> bool {
         self.triangles.iter().all(|triangle| {
             let normal = triangle.normal();
@@ -115,7 +117,8 @@ fn samplings() -> Vec<(Filter, Bias)> {
         .collect()
 }
 
-/// Distances from the crease, in texels, of the receivers that are in shadow, for all creases; and how many were asked.
+/// Returns the distances from the crease, in texels, of the receivers that are in shadow, for all creases, and how many
+/// were sampled.
 fn false_shadows(signs: f64, filter: Filter, bias: Bias) -> (Vec<(f64, String)>, usize) {
     let mut sun = Sun::new(&DirectionalShadowDescriptor {
         map_size: 128,
@@ -130,7 +133,7 @@ fn false_shadows(signs: f64, filter: Filter, bias: Bias) -> (Vec<(f64, String)>,
             .sheets
             .iter()
             .fold(Aabb::EMPTY, |all, sheet| all.union(sheet.bounds()));
-        // A margin below, so that the sheets have something to fall on and are drawn.
+        // A margin below gives the sheets something to cast onto, so that they are drawn.
         let cover = Aabb::new(all.min - Vec3::splat(0.5), all.max);
         let coverage = Coverage::Bounds(cover);
         let report = sun.record(
@@ -155,7 +158,8 @@ fn false_shadows(signs: f64, filter: Filter, bias: Bias) -> (Vec<(f64, String)>,
     (found, asked)
 }
 
-/// On a ridge every texel on the far side lies lower than the receiver's plane: nothing may be darker than 1/255 below lit.
+/// On a ridge every texel on the far side lies lower than the receiver's plane: nothing may be darker than 1/255 below
+/// lit.
 #[test]
 fn ridges_are_lit() {
     let mut all = 0;
@@ -184,9 +188,9 @@ fn ridges_are_lit() {
     );
 }
 
-/// In a valley the far side rises above the receiver's plane, so a kernel that reaches across the crease sees it as a caster.
-/// It reaches K texels per axis, at most √2 K from the crease; a receiver moved along its normal gets `√2 K` further at most.
-/// Half a texel is for what a texel's centre stands for.
+/// In a valley the far side rises above the receiver's plane, so a kernel that reaches across the crease sees it as a
+/// caster. It reaches K texels per axis, at most √2 K from the crease; a receiver that is moved along its normal gets
+/// at most `√2 K` further. Half a texel is for the area that a texel's centre represents.
 #[test]
 fn false_shadow_in_valleys_stays_at_the_crease() {
     let (mut all, mut farthest_share) = (0, 0.0_f64);

@@ -1,4 +1,4 @@
-//! Bounds without volume or without end, lights without direction, maps of every size.
+//! Tests bounds without volume or without limit, lights without direction, and maps of every size.
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
@@ -19,7 +19,7 @@ fn cover() -> Aabb {
     Aabb::new(Vec3::new(-2.0, -0.5, -2.0), Vec3::new(2.0, 1.5, 2.0))
 }
 
-/// A flat plate at height one over the middle.
+/// Returns a flat plate at height one over the middle.
 fn plate() -> Mesh {
     Mesh::sheet(Vec3::new(-1.0, 1.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0)
 }
@@ -31,7 +31,7 @@ fn below() -> [Point; 2] {
     ]
 }
 
-/// What a frame says of the place below the plate and of one beside it, or its error.
+/// Returns the visibilities of the position below the plate and of one beside it, or the frame's error.
 fn frame(
     sun: &mut Sun,
     light: Vec3,
@@ -55,8 +55,8 @@ fn frame(
     status.map(|status| (status, sun.ask(&below())))
 }
 
-/// Bounds of a sheet are flat and cast all the same; bounds that are a point, or empty, cast nothing or something but break
-/// nothing; bounds without end are refused by name.
+/// Bounds of a sheet are flat and cast all the same; bounds that are a point, or empty, may cast nothing and break
+/// nothing; bounds that are not finite are refused by name.
 #[test]
 fn bounds_without_volume_or_without_end() {
     let mut sun = Sun::of_size(128);
@@ -97,7 +97,7 @@ fn bounds_without_volume_or_without_end() {
             let as_receiver = frame(&mut sun, down, coverage, flat, &with_floor).expect("left out");
             assert_eq!(as_receiver.1, [0.0, 1.0], "{bounds:?}");
         }
-        // The largest numbers there are: a fit that can be expressed, or an error that says it cannot.
+        // For the largest numbers that exist, the fit can be represented, or an error says that it cannot.
         let huge = Aabb::new(Vec3::splat(-f32::MAX), Vec3::splat(f32::MAX));
         match frame(&mut sun, down, coverage, huge, &floor) {
             Ok((_, seen)) => assert!(seen.iter().all(|seen| (0.0..=1.0).contains(seen))),
@@ -126,8 +126,8 @@ fn bounds_without_volume_or_without_end() {
     );
 }
 
-/// Length means nothing: a direction of the smallest or largest numbers shines as its unit vector does, to the bit where it
-/// points along an axis. No direction and broken directions are refused, and the last answers stay.
+/// Length has no meaning: a direction of the smallest or largest numbers shines as its unit vector does, to the bit
+/// where it points along an axis. Zero and non-finite directions are refused, and the last visibilities stay.
 #[test]
 fn lights_without_length_or_direction() {
     let mut sun = Sun::of_size(128);
@@ -160,8 +160,8 @@ fn lights_without_length_or_direction() {
     );
 }
 
-/// Maps from a single texel to the largest that every device has: the plate's shadow is there wherever there are texels for
-/// it, nothing shadows itself in any, and sizes that cannot be are refused by name.
+/// Maps range from a single texel to the largest that every device supports: the plate's shadow is there wherever there
+/// are texels for it, nothing shadows itself in any, and impossible sizes are refused by name.
 #[test]
 fn maps_of_every_size() {
     let gpu = gpu();
@@ -183,7 +183,7 @@ fn maps_of_every_size() {
         if map_size >= 33 {
             assert_eq!(seen, [0.0, 1.0], "{map_size}");
         }
-        // The plate's own lit side.
+        // This is the plate's own lit side.
         let on_plate: Vec<_> = (0..100)
             .map(|index| {
                 let (x, z) = ((index % 10) as f32 * 0.19, (index / 10) as f32 * 0.19);

@@ -1,4 +1,4 @@
-//! The same scenes in maps of 32 and of 16 bits, over short and long depth ranges.
+//! Compares the same scenes in maps of 32 and of 16 bits, over short and long depth ranges.
 
 use glam::{DMat3, DVec3};
 use wgpu_shadows::{Aabb, DepthFormat, DirectionalShadowDescriptor};
@@ -13,15 +13,15 @@ use crate::support::gpu::gpu;
 
 const FORMATS: [DepthFormat; 2] = [DepthFormat::Float32, DepthFormat::Unorm16];
 
-/// What is covered reaches from the scene's top down to `range` below it.
+/// Covers the scene from its top down to `range` below it.
 fn down_to(range: f64, bounds: Aabb) -> Coverage {
     let mut covered = bounds;
     covered.min.y = covered.min.y.min(covered.max.y - range as f32);
     Coverage::Bounds(covered)
 }
 
-/// A step of depth decides only where caster and receiver are as close as that: at most one receiver in a thousand answers
-/// otherwise in 16 bits than in 32, in and around shadows.
+/// A step of depth matters only where caster and receiver are as close as that: at most one receiver in a thousand has
+/// another visibility in 16 bits than in 32, in and around shadows.
 #[test]
 fn both_depth_formats_give_the_same_picture() {
     let (mut differences, mut asked) = (0, 0);
@@ -70,8 +70,8 @@ fn both_depth_formats_give_the_same_picture() {
     );
 }
 
-/// A scene of a hundred times the usual size at the top of ever deeper pits: settled receivers are as they should be as long as
-/// what casts stands higher than the reported gap, which is asserted of every box.
+/// A scene of a hundred times the usual size lies at the top of ever deeper pits: settled receivers are correct as long
+/// as what casts is higher than the reported gap, which is asserted of every box.
 #[test]
 fn long_depth_ranges_keep_their_shadows() {
     let unit = 100.0;

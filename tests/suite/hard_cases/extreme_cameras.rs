@@ -1,4 +1,4 @@
-//! Cameras at and beyond the limits of what can be a camera.
+//! Tests cameras at and beyond the limits of what a camera can be.
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{CascadeSplit, DirectionalLight, DirectionalShadowDescriptor, ShadowError};
@@ -11,7 +11,7 @@ use crate::support::gpu::gpu;
 use crate::support::report::assert_whole;
 use crate::support::view_member::member;
 
-/// Every lens with its name, and whether it is a camera that engines have.
+/// Returns every lens with its name, and whether it is a camera that engines have.
 fn lenses() -> Vec<(String, Lens, bool)> {
     let mut lenses = Vec::new();
     let ranges = [
@@ -51,8 +51,8 @@ fn lenses() -> Vec<(String, Lens, bool)> {
     lenses
 }
 
-/// The frame is taken, and then every uniform is finite and every answer a visibility, or refused as a camera that is none,
-/// and then the answers are as before. Cameras that engines have are taken.
+/// The frame is accepted, and then every uniform is finite and every result a visibility; or the camera is refused, and
+/// then the visibilities are as before. Cameras that engines have are accepted.
 #[test]
 fn any_lens_is_fitted_or_refused() {
     let gpu = gpu();
@@ -127,7 +127,7 @@ fn any_lens_is_fitted_or_refused() {
     );
 }
 
-/// What an engine may hand over by mistake is refused by the name of its field.
+/// What an engine may pass by mistake is refused by the name of its field.
 #[test]
 fn what_is_no_camera_is_refused() {
     let gpu = gpu();

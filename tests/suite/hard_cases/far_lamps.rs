@@ -1,4 +1,4 @@
-//! Spot and point lights far from the world's origin, and in other units.
+//! Tests spot and point lights far from the world's origin, and in other units.
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
@@ -17,10 +17,10 @@ use crate::support::random::Random;
 use crate::support::scene::{Mesh, Scene};
 
 const MAP_SIZE: u32 = 256;
-/// Exact in few bits, so that powers of two take it nowhere else.
+/// Is a position that is exact in few bits, so that scaling by powers of two does not round it.
 const LIGHT: DVec3 = DVec3::new(0.25, 1.5, -0.5);
 
-/// A room with solids around the light, whose coordinates are whole 64ths times `unit`.
+/// Returns a room with solids around the light, whose coordinates are whole 64ths times `unit`.
 fn room(unit: f64) -> Vec<Mesh> {
     let slab = |x: f64, y: f64, z: f64, half: f64| {
         let (low, high) = (DVec3::new(x, y, z) - half, DVec3::new(x, y, z) + half);
@@ -36,7 +36,7 @@ fn room(unit: f64) -> Vec<Mesh> {
     ]
 }
 
-/// One lamp, and one spot that shines obliquely down.
+/// Holds one point light, and one spot light that shines obliquely down.
 struct Both {
     lamp: OmniShadow,
     spot: SpotShadow,
@@ -113,7 +113,7 @@ fn spot_axis() -> DVec3 {
     DVec3::new(0.5, -1.0, 0.25)
 }
 
-/// Places all over the room, with normals toward the light, exact in f32 with their unit.
+/// Returns positions all over the room, with normals toward the light, exact in f32 with their unit.
 fn points(unit: f64) -> Vec<Point> {
     let mut random = Random::new(109);
     (0..3000)
@@ -167,8 +167,8 @@ fn local_lights_far_away_are_the_same_to_the_bit() {
     );
 }
 
-/// In units of powers of two no bit of a visibility changes; in others settled receivers are as the truth says. So they are at
-/// any distance with an origin.
+/// In units that are powers of two no bit of a visibility changes; in others settled receivers are correct. The same
+/// holds at any distance with an origin.
 #[test]
 fn local_lights_know_no_unit() {
     let points_of = points;
@@ -193,7 +193,8 @@ fn local_lights_know_no_unit() {
     );
 }
 
-/// Reach, half a texel of stairs and the residual offset, toward a face's corner along both axes at once.
+/// Returns, as a tangent, the reach, half a texel of stairs and the residual offset, toward a face's corner along both
+/// axes at once.
 fn tangent() -> f64 {
     3.5 * 2.0_f64.sqrt() * 1.05 * 2.0 / f64::from(MAP_SIZE)
 }

@@ -1,4 +1,4 @@
-//! Any names, groups, stages, modules, formats and pictures of what looks maps up.
+//! Passes any names, groups, stages, modules, formats and images to the bindings and debug views.
 
 use proptest::prelude::*;
 use wgpu_shadows::{
@@ -12,7 +12,7 @@ use crate::support::gpu::gpu;
 use crate::support::picture::{color_pass, color_target};
 use crate::support::wgsl;
 
-/// Letters, digits and underscores, a few of the library's own names, and any text.
+/// Generates letters, digits and underscores, a few of the library's own names, and any text.
 fn name() -> impl Strategy<Value = String> {
     prop_oneof![
         6 => "[a-z][a-z0-9_]{0,6}[a-z]",
@@ -22,8 +22,8 @@ fn name() -> impl Strategy<Value = String> {
     ]
 }
 
-/// Whatever names, group, stages and lights: a bind group whose WGSL compiles, or an error; and whatever modules: a composition
-/// that compiles, or an error.
+/// Any names, group, stages and lights give a bind group whose WGSL compiles, or an error; any modules give a
+/// composition that compiles, or an error.
 #[test]
 fn any_bindings_are_taken_or_refused() {
     let gpu = gpu();
@@ -82,7 +82,7 @@ fn any_bindings_are_taken_or_refused() {
     );
 }
 
-/// Whatever target format and picture: drawn, or refused.
+/// Any target format and image is drawn, or refused.
 #[test]
 fn any_debug_picture_is_drawn_or_refused() {
     use wgpu::TextureFormat as F;
@@ -113,7 +113,7 @@ fn any_debug_picture_is_drawn_or_refused() {
         usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
         view_formats: &[],
     });
-    // One that is a picture's depth, and two that are not.
+    // One of these is the depth of an image, and two are not.
     let depths = [
         depth.create_view(&Default::default()),
         color_target(gpu, 4).create_view(&Default::default()),

@@ -1,4 +1,4 @@
-//! Any layout, state, text, buffer and range of what casts.
+//! Passes any layout, state, text, buffer and range to the casters.
 
 use std::cell::RefCell;
 
@@ -16,7 +16,7 @@ use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};
 use crate::support::gpu::gpu;
 use crate::support::probe::Point;
 
-/// Numbers of bytes and of vertices: small, aligned or not, and huge.
+/// Generates numbers of bytes and of vertices: small, aligned or not, and huge.
 fn count() -> impl Strategy<Value = u32> + Clone {
     prop_oneof![8 => (0..40_u32).prop_map(|n| n * 4), 4 => 0..100_u32, 1 => any::<u32>(), 1 => Just(u32::MAX)]
 }
@@ -51,7 +51,7 @@ fn depth_formats() -> impl Strategy<Value = Vec<DepthFormat>> {
     prop_oneof![4 => prop::collection::vec(one.clone(), 1..3), 1 => prop::collection::vec(one, 0..4)]
 }
 
-/// The state that a pipeline has beside its vertex stage.
+/// Generates the state that a pipeline has in addition to its vertex stage.
 fn primitive() -> impl Strategy<
     Value = (
         Option<wgpu::Face>,
@@ -99,7 +99,7 @@ fn model() -> impl Strategy<Value = ModelTransform> {
     ]
 }
 
-/// Whatever vertex layout, state, formats and shader text: pipelines, or an error. What is made can be drawn with.
+/// Any vertex layout, state, formats and shader text give pipelines that can be drawn with, or an error.
 #[test]
 fn any_pipeline_is_taken_or_refused() {
     const GOOD: &str = "@vertex fn v(@location(0) p: vec3<f32>) -> @builtin(position) vec4<f32> { return shadow_caster_clip(p); }\n@fragment fn f() {}";
@@ -109,7 +109,7 @@ fn any_pipeline_is_taken_or_refused() {
         1 => (count(), count(), vertex_format()),
     ];
     let position = (layout, any::<bool>());
-    // A text with a piece cut out, or one of its characters replaced.
+    // The text has a piece cut out, or one of its characters replaced.
     let text = (0..12, 0..GOOD.len(), 0..GOOD.len(), any::<char>());
     let entries = prop::sample::select(vec![
         ("v", None),
@@ -196,7 +196,7 @@ fn any_pipeline_is_taken_or_refused() {
     );
 }
 
-/// Whatever buffers and ranges: a mesh or an error, and what is made is drawn without a word of the device.
+/// Any buffers and ranges give a mesh that is drawn without an error of the device, or an error.
 #[test]
 fn any_buffers_of_a_mesh_are_taken_or_refused() {
     let gpu = gpu();
@@ -238,7 +238,7 @@ fn any_buffers_of_a_mesh_are_taken_or_refused() {
     };
     use wgpu::BufferUsages as U;
     let sizes = (0..300_u64, 0..100_u64, usage(U::VERTEX), usage(U::INDEX));
-    // Mostly ranges that small buffers hold.
+    // Most of the ranges fit into small buffers.
     let ends = prop_oneof![5 => (0..8_u32, 8..60_u32), 1 => (count(), count())];
     let range = (ends, any::<i32>(), any::<bool>(), any::<bool>());
     let placed = (0..4_usize, bounds(), matrix(), prop::bool::weighted(0.7));

@@ -1,4 +1,4 @@
-//! Any order of what comes and goes in a pool.
+//! Inserts, removes and records lights of a pool in any order.
 
 use std::cell::RefCell;
 
@@ -12,17 +12,18 @@ use super::fuzz_values::{Counts, number, run};
 use crate::support::frames::{PoolFrame, RecordFrame};
 use crate::support::gpu::gpu;
 
-/// What may be done with a pool.
+/// Lists what may be done with a pool.
 #[derive(Clone, Debug)]
 enum Step {
     Insert,
-    /// A slot that was given out at some time, here or by another pool.
+    /// Removes a slot that was returned at some time, by this pool or by another.
     Remove(usize),
-    /// A frame of such slots.
+    /// Records a frame of such slots.
     Record(Vec<usize>, f32),
 }
 
-/// Whatever comes and goes: slots are given out once, taken back once, and only living ones are recorded, each once a frame.
+/// Whatever the order, slots are returned once and removed once, and only occupied ones are recorded, each once per
+/// frame.
 #[test]
 fn any_coming_and_going_in_a_pool() {
     let gpu = gpu();

@@ -1,4 +1,4 @@
-//! Any numbers in the functions that need no device: the reference of the shader's arithmetic, and boxes.
+//! Passes any numbers to the functions that need no device: the CPU reference of the shader, and boxes.
 
 use std::cell::Cell;
 
@@ -11,7 +11,7 @@ use super::fuzz_values::{bias, bounds, filter, matrix, number, run, vector};
 use super::table;
 use crate::support::view_member::{member, with_member};
 
-/// Uniforms of any numbers, and whole sizes of maps as often.
+/// Generates uniforms of any numbers, and as often whole sizes of maps.
 fn uniform() -> impl Strategy<Value = ShadowViewUniform> {
     let words = size_of::<ShadowViewUniform>() / 4;
     let size = prop_oneof![(1..8_u8).prop_map(f32::from), number()];
@@ -21,7 +21,8 @@ fn uniform() -> impl Strategy<Value = ShadowViewUniform> {
     })
 }
 
-/// Receivers of any numbers, those that the reference makes among them, over maps of any size, whole or with texels missing.
+/// Receivers of any numbers, those that the CPU reference returns among them, are sampled over maps of any size,
+/// complete or with texels missing.
 #[test]
 fn any_numbers_in_the_reference_get_a_visibility() {
     let (answers, inside) = (Cell::new(0), Cell::new(0));
@@ -44,19 +45,19 @@ fn any_numbers_in_the_reference_get_a_visibility() {
             grid: member(&view, "grid"),
             inside: true,
         };
-        let twin = receiver(&view, filter, bias, position, normal);
-        let twin_inside = Receiver {
+        let reference = receiver(&view, filter, bias, position, normal);
+        let reference_inside = Receiver {
             inside: true,
-            ..twin
+            ..reference
         };
-        for receiver in [twin, twin_inside, any] {
+        for receiver in [reference, reference_inside, any] {
             let seen = visibility(filter, &map, &receiver);
             let sound = (0.0..=1.0).contains(&seen);
             prop_assert!(sound, "{} of {:?} {:?}", seen, filter, receiver);
             answers.set(answers.get() + 1);
             inside.set(inside.get() + usize::from(seen < 1.0));
         }
-        prop_assert!(twin.inside == holds(&view, position));
+        prop_assert!(reference.inside == holds(&view, position));
         let weight = weight(&view, position);
         prop_assert!((0.0..=1.0).contains(&weight), "{}", weight);
         Ok(())
@@ -73,7 +74,8 @@ fn any_numbers_in_the_reference_get_a_visibility() {
     );
 }
 
-/// Boxes of any numbers: a union holds both, the image of a box under a sound matrix is a box, and what is broken is not finite.
+/// Boxes have any numbers: a union contains both, the transform of a box by a finite matrix is a box, and a broken box
+/// is not finite.
 #[test]
 fn any_numbers_in_boxes() {
     let whole = Cell::new(0);

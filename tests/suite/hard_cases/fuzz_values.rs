@@ -1,4 +1,5 @@
-//! Values of every field, ordinary and broken, and a run over them that watches the device.
+//! Generates values for every field, ordinary and invalid, and runs tests over them while watching the device for
+//! errors.
 
 use std::cell::Cell;
 
@@ -11,7 +12,7 @@ use super::table;
 use crate::support::camera::Camera;
 use crate::support::gpu::gpu;
 
-/// Runs `test` on as many cases, each within error scopes that must stay empty.
+/// Runs `test` on that many cases, each within error scopes that must stay empty.
 pub fn run<S: Strategy>(
     cases: u32,
     strategy: S,
@@ -44,7 +45,7 @@ pub fn run<S: Strategy>(
     }
 }
 
-/// Mostly ordinary numbers; some at the ends of what there is; a few of any bits.
+/// Generates mostly ordinary numbers, some at the limits of f32, and a few of any bits.
 pub fn number() -> impl Strategy<Value = f32> + Clone {
     let odd = prop::sample::select(vec![
         0.0,
@@ -123,12 +124,12 @@ pub fn bias() -> impl Strategy<Value = Bias> {
     })
 }
 
-/// Sizes that a test can afford, or that must be refused.
+/// Generates sizes that a test can afford, or that must be refused.
 pub fn size() -> impl Strategy<Value = u32> {
     prop_oneof![6 => 0..40_u32, 1 => Just(u32::MAX), 1 => 8193..u32::MAX]
 }
 
-/// Everything that any frame has.
+/// Holds everything that a frame of any light has.
 #[derive(Clone, Debug)]
 pub struct Numbers {
     pub origin: Vec3,
@@ -174,7 +175,7 @@ pub fn numbers() -> impl Strategy<Value = Numbers> {
     )
 }
 
-/// How many were taken and how many refused.
+/// Counts the cases that were accepted and those that were refused.
 #[derive(Default)]
 pub struct Counts {
     taken: Cell<usize>,

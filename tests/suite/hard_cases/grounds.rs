@@ -1,4 +1,5 @@
-//! Grounds of any size that cast, with feet on and in them, and other objects that are far larger than what they shadow.
+//! Tests grounds of any size that cast, with feet on and in them, and other objects that are far larger than what they
+//! shadow.
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::caster::caster_shape;
@@ -17,10 +18,11 @@ use crate::support::watched::Watched;
 const LIGHT: DVec3 = DVec3::new(0.527, -0.738, -0.4216);
 const LOW_LIGHT: DVec3 = DVec3::new(0.93, -0.31, -0.2);
 
-/// Half sides of grounds, from a room to a county.
+/// Lists the half sides of the grounds in metres, from a room to a county.
 const HALF_SIDES: [f32; 6] = [2.0, 5.0, 50.0, 500.0, 5e3, 5e4];
 
-/// A robot of 0.8 m whose feet are `sunk` below the ground, and the ground: a sheet, or a slab of some thickness.
+/// Returns a ground and a robot of 0.8 m whose feet are `sunk` metres below it. The ground is a sheet, or a slab if
+/// `thickness` (in metres) is above 0.
 fn meshes(half: f32, thickness: f32, sunk: f32) -> Vec<Mesh> {
     let ground = if thickness == 0.0 {
         Mesh::floor(0.0, half)
@@ -38,7 +40,7 @@ fn meshes(half: f32, thickness: f32, sunk: f32) -> Vec<Mesh> {
     ]
 }
 
-/// Casters that say what their meshes allow.
+/// Returns casters whose shapes are those that `caster_shape` finds for their meshes.
 fn casters(meshes: &[Mesh]) -> Vec<MeshCaster> {
     let pipeline = default_pipeline(gpu());
     let caster = |mesh: &Mesh| {
@@ -70,11 +72,13 @@ fn near_camera() -> Camera {
     )
 }
 
-/// Three texels of 2 mm, stretched by the slant of the light. The map of the robot alone has finer ones.
+/// Is the distance in metres from the edge of a shadow beyond which a receiver is settled: three texels of 2 mm,
+/// stretched by the slant of the light. The map of the robot alone has finer texels.
 const SETTLED: f64 = 0.012;
 
-/// Compares what the sun shows of the ground around the robot with rays. A receiver is settled where rays from `margin` around
-/// agree. `triangles` leaves the ground out, whose own rounding at far corners would decide.
+/// Compares the visibilities of the ground around the robot with rays. A receiver is settled where rays from points
+/// `margin` metres around it agree. `triangles` does not contain the ground, because the rounding of its far corners
+/// would decide the result.
 fn around_robot(sun: &Sun, triangles: &[Triangle], light: DVec3, margin: f64) -> Verdict {
     let mut random = Random::new(5);
     let camera = near_camera();
@@ -82,17 +86,17 @@ fn around_robot(sun: &Sun, triangles: &[Triangle], light: DVec3, margin: f64) ->
     let mut verdict = Verdict::default();
     let (mut points, mut truths) = (Vec::new(), Vec::new());
     while points.len() < 3000 {
-        let place = random.point(low, high).as_vec3().as_dvec3();
-        if !camera.sees(place, f64::INFINITY, 0.01) {
+        let position = random.point(low, high).as_vec3().as_dvec3();
+        if !camera.sees(position, f64::INFINITY, 0.01) {
             continue;
         }
         let dark = |at: DVec3| occluded(triangles, at, -light, 0.0);
-        let here = dark(place);
+        let here = dark(position);
         let settled = (0..12).all(|step| {
             let angle = f64::from(step) * std::f64::consts::TAU / 12.0;
-            dark(place + DVec3::new(angle.cos(), 0.0, angle.sin()) * margin) == here
+            dark(position + DVec3::new(angle.cos(), 0.0, angle.sin()) * margin) == here
         });
-        points.push(Point::rounded(place, DVec3::Y));
+        points.push(Point::rounded(position, DVec3::Y));
         truths.push(settled.then_some(here));
     }
     for (truth, seen) in truths.iter().zip(sun.ask(&points)) {
@@ -101,7 +105,8 @@ fn around_robot(sun: &Sun, triangles: &[Triangle], light: DVec3, margin: f64) ->
     verdict
 }
 
-/// One cascade, everything default, a camera without a far limit: the robot's shadow is as fine on ten kilometres as in a room.
+/// Checks that the robot's shadow is as fine on a ground of many kilometres as in a room, with one cascade, all
+/// defaults, and a camera without a far limit.
 #[test]
 fn a_ground_of_any_size_leaves_shadows_sharp() {
     let mut all = Verdict::default();
@@ -132,7 +137,8 @@ fn a_ground_of_any_size_leaves_shadows_sharp() {
             all.add(&verdict);
         }
     }
-    // In a map of 2048 texels, the robot and its shadow, 1.3 m, come to 0.6 mm and a size step.
+    // The robot and its shadow are 1.3 m wide. A map of 2048 texels has texels of 0.6 mm over them, and the quantized
+    // size may be one step larger.
     assert!(coarsest < 1.2e-3, "{coarsest}");
     table::record(
         "a robot of 0.8 m on grounds of half side 2 to 5e4 that cast: sheets and slabs, feet on and in them",
@@ -141,8 +147,8 @@ fn a_ground_of_any_size_leaves_shadows_sharp() {
     );
 }
 
-/// A ground of two triangles does not shadow itself, however far away its corners are, whether a map follows a camera or is a
-/// fixed box. A foot dips into it, so that it is among the casters.
+/// Checks that a ground of two triangles does not shadow itself, however far away its corners are, whether the map
+/// follows a camera or covers a fixed box. A foot is sunk into the ground, so that the ground is among the casters.
 #[test]
 fn a_giant_ground_is_lit() {
     let mut random = Random::new(19);
@@ -150,7 +156,7 @@ fn a_giant_ground_is_lit() {
     for half in [500.0_f32, 3e3, 5e3, 1e4, 7e4, 2e5] {
         for light in [LIGHT, LOW_LIGHT, DVec3::new(0.7, -1.0, 0.02)] {
             let meshes = meshes(half, 0.0, 0.001);
-            // Without their shapes, as an engine that says nothing has them.
+            // These casters keep the default shape, like those of an engine that does not state one.
             let pipeline = default_pipeline(gpu());
             let casters: Vec<_> = meshes
                 .iter()
@@ -177,23 +183,23 @@ fn a_giant_ground_is_lit() {
                 );
                 let triangles = triangles(&meshes);
                 let robot = &triangles[2..];
-                let places: Vec<_> = (0..2000)
+                let positions: Vec<_> = (0..2000)
                     .map(|_| {
                         let low = DVec3::new(-reach, 0.0, -reach);
                         random.point(low, -low).as_vec3().as_dvec3()
                     })
-                    // Half a metre around the robot and its shadow is left out.
-                    .filter(|place| {
-                        let around = |step: DVec3| !occluded(robot, *place + step, -light, 0.0);
+                    // Receivers within half a metre of the robot and its shadow are left out.
+                    .filter(|position| {
+                        let around = |step: DVec3| !occluded(robot, *position + step, -light, 0.0);
                         let steps = [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z];
-                        place.abs().max_element() > 0.6
+                        position.abs().max_element() > 0.6
                             && around(DVec3::ZERO)
                             && steps.iter().all(|step| around(*step * 0.5))
                     })
                     .collect();
-                let points: Vec<_> = places
+                let points: Vec<_> = positions
                     .iter()
-                    .map(|place| Point::rounded(*place, DVec3::Y))
+                    .map(|position| Point::rounded(*position, DVec3::Y))
                     .collect();
                 let dark = sun
                     .ask(&points)
@@ -219,7 +225,7 @@ fn a_giant_ground_is_lit() {
     );
 }
 
-/// A sky dome that neither casts nor receives costs nothing, whatever its radius.
+/// Checks that a sky dome that neither casts nor receives does not change the shadows, whatever its radius.
 #[test]
 fn a_sky_dome_leaves_shadows_alone() {
     let mut all = Verdict::default();
@@ -250,7 +256,7 @@ fn a_sky_dome_leaves_shadows_alone() {
     );
 }
 
-/// One object with wild bounds, finite or not, leaves the shadows of the others in place.
+/// Checks that one object with far too large bounds, finite or not, does not change the shadows of the others.
 #[test]
 fn one_wild_box_leaves_other_shadows_in_place() {
     let mut all = Verdict::default();
@@ -279,7 +285,7 @@ fn one_wild_box_leaves_other_shadows_in_place() {
         });
         let coverage = Coverage::Camera(limited);
         let report = sun.record(DVec3::ZERO, shining(LIGHT), coverage, &list, &[]);
-        // The cascade around the robot has texels of 3 mm, and depths that are rounded to three of them.
+        // The cascade around the robot has texels of 3 mm, and its depths are rounded to three texels.
         let verdict = around_robot(&sun, &triangles(&meshes[1..]), LIGHT, 3.0 * SETTLED);
         verdict.assert_right(&format!("{bounds:?}"));
         all.add(&verdict);

@@ -1,4 +1,4 @@
-//! Casters above casters: the light that one of them stops stays stopped.
+//! Tests casters above casters: light that one of them blocks stays blocked.
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{Aabb, Bias, DirectionalShadowDescriptor, Filter};
@@ -11,9 +11,9 @@ use crate::support::probe::Point;
 use crate::support::random::Random;
 use crate::support::scene::Mesh;
 
-/// A roof over a shelf over a floor, a deep pit below: the floor and the shelf are dark to the last bit under every filter and
-/// derived bias, however thin roof and shelf are and however close they lie to each other, as long as the receiver lies deeper
-/// below the roof than the gap that the report admits. The roof's own top is lit.
+/// A roof lies over a shelf over a floor, with a deep pit below: the floor and the shelf are dark to the last bit under
+/// every filter and derived bias, however thin roof and shelf are and however close to each other, as long as the
+/// receiver lies deeper below the roof than the reported gap. The roof's own top is lit.
 #[test]
 fn nothing_leaks_through_a_stack() {
     let mut asked = 0;
@@ -40,7 +40,7 @@ fn nothing_leaks_through_a_stack() {
                         Vec3::new(-3.0, -pit as f32, -3.0),
                         Vec3::new(3.0, roof as f32, 3.0),
                     );
-                    // Slanted light slides far aside in a deep pit: there the map is as wide as the pit is deep.
+                    // Slanted light reaches far sideways in a deep pit: there the map is as wide as the pit is deep.
                     if light.x != 0.0 && pit > 100.0 {
                         continue;
                     }

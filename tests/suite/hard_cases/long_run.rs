@@ -1,6 +1,7 @@
-//! Many frames with lights that move, change and are made anew: nothing piles up, and what is dropped is gone.
+//! Records many frames with lights that move, change and are made again: nothing accumulates, and what is dropped is
+//! freed.
 //!
-//! `SHADOW_LONG=1` runs ten thousand frames in place of three hundred.
+//! `SHADOW_LONG=1` runs ten thousand frames instead of three hundred.
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu::util::DeviceExt;
@@ -20,10 +21,10 @@ use crate::support::frames::{
 use crate::support::gpu::gpu;
 use crate::support::scene::Mesh;
 
-/// Frames after which every light is made anew, in another size.
+/// Is the number of frames after which every light is made again, in another size.
 const LIFE: u32 = 25;
 
-/// An instance of its own, whose objects are counted.
+/// Holds an instance of its own, whose objects are counted.
 struct Counted {
     instance: wgpu::Instance,
     device: wgpu::Device,
@@ -55,7 +56,7 @@ impl Counted {
         }
     }
 
-    /// Objects by kind, once the device has done all its work and let go of what was dropped.
+    /// Returns the number of objects by kind, once the device has finished its work and freed what was dropped.
     fn objects(&self) -> [(&'static str, usize); 10] {
         self.device
             .poll(wgpu::PollType::wait_indefinitely())
@@ -77,7 +78,7 @@ impl Counted {
     }
 }
 
-/// One light of every kind, with what asks them.
+/// Holds one light of every kind, with the probes that sample them.
 struct Lights {
     sun: DirectionalShadow,
     spot: SpotShadow,
@@ -186,7 +187,7 @@ impl Lights {
             casters,
             receivers: &receivers,
         };
-        // Slots come and go, so that all three are taken in turn.
+        // Slots are removed and inserted again, so that all three are used in turn.
         if self.slots.len() < 3 {
             self.slots.push(self.pool.insert().expect("a free slot"));
         } else {
@@ -251,8 +252,9 @@ fn mesh_caster(device: &wgpu::Device, pipeline: &CasterPipeline, mesh: &Mesh) ->
     MeshCaster::new(device, &descriptor).expect("a valid mesh")
 }
 
-/// Objects are counted at the end of each life of the lights, where all lives hold alike: as many after the last as after the
-/// second (the first warms up), and after everything is dropped, as many as before anything was made.
+/// Objects are counted at the end of each lifetime of the lights, at which all lifetimes have the same: there are as
+/// many after the last as after the second (the first warms up), and after everything is dropped, as many as before
+/// anything was made.
 #[test]
 fn nothing_piles_up_and_everything_is_freed() {
     let long = std::env::var("SHADOW_LONG").as_deref() == Ok("1");

@@ -1,4 +1,4 @@
-//! Meshes that are mirrored, open, wound the other way or full of triangles without area.
+//! Tests meshes that are mirrored, open, wound the other way, or full of triangles without area.
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::{
@@ -13,10 +13,10 @@ use crate::support::readback;
 use crate::support::rounding::U;
 use crate::support::scene::Mesh;
 
-/// Texels per side of the map.
+/// Is the number of texels per side of the map.
 const SIZE: usize = 96;
 
-/// The depths of a mesh alone, under a slanted light.
+/// Returns the depths of a mesh alone, under a slanted light.
 fn depths(pipeline: &CasterPipeline, mesh: &Mesh, transform: Mat4) -> Vec<f32> {
     let gpu = gpu();
     let mut sun = Sun::of_size(SIZE as u32);
@@ -49,7 +49,7 @@ fn reversed(mesh: &Mesh) -> Mesh {
     mesh
 }
 
-/// Negated along x, so that a transform that mirrors x gives the mesh back, exactly.
+/// Returns the mesh negated along x, so that a transform that mirrors x gives the mesh itself, exactly.
 fn mirrored(mesh: &Mesh) -> Mesh {
     let mut mesh = mesh.clone();
     for position in &mut mesh.positions {
@@ -58,7 +58,7 @@ fn mirrored(mesh: &Mesh) -> Mesh {
     reversed(&mesh)
 }
 
-/// Points, needles and folded triangles, which cover no area.
+/// Returns the mesh with points, needles and folded triangles added, which cover no area.
 fn with_empty_triangles(mesh: &Mesh) -> Mesh {
     let mut mesh = mesh.clone();
     let first = mesh.positions.len() as u32;
@@ -76,7 +76,7 @@ fn with_empty_triangles(mesh: &Mesh) -> Mesh {
     mesh
 }
 
-/// Largest change of depth from a texel to one of its four neighbours, among those that are drawn.
+/// Returns the largest change of depth from a texel to one of its four neighbours, among those that are drawn.
 fn steepness(depths: &[f32], texel: usize) -> f64 {
     let (x, y) = (texel % SIZE, texel / SIZE);
     let beside = [
@@ -94,9 +94,9 @@ fn steepness(depths: &[f32], texel: usize) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// The order in which a triangle's corners come and an exact mirroring change no depth but by rounding, since interpolation may
-/// start from another corner: by no more than the derived bias allows for, 6u of the depth range and the change of depth over
-/// `6uN` texels. Triangles without area draw nothing, and not one texel is drawn more or less.
+/// The order of a triangle's corners and an exact mirroring change no depth except by rounding, since interpolation may
+/// start from another corner: by no more than the derived bias allows for, 6u of the depth range and the change of
+/// depth over `6uN` texels. Triangles without area draw nothing, and not one texel is drawn more or less.
 #[test]
 fn winding_mirroring_and_empty_triangles_change_nothing() {
     let solid = Mesh::sphere(Vec3::new(0.1, 0.2, -0.1), 1.1, 12);

@@ -1,4 +1,4 @@
-//! Scenes that break shadow maps: each through the whole path, fit, cast, receive and read back.
+//! Tests scenes that break shadow maps, each from the fit to the visibilities read back.
 //!
 //! Every case compares what it expects and what it measured with the table in `doc/hard_cases.md`.
 

@@ -1,4 +1,4 @@
-//! Spot and point lights a hair above a surface: it stays lit, and what stands on it casts.
+//! Tests spot and point lights very close above a surface: it stays lit, and what is on it casts.
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
@@ -18,7 +18,7 @@ use crate::support::scene::Mesh;
 const RANGE: f64 = 10.0;
 const EVERYWHERE: [Aabb; 1] = [Aabb::new(Vec3::splat(-30.0), Vec3::splat(30.0))];
 
-/// Lamp and spot under one filter and bias.
+/// Holds a point light and a spot light under one filter and bias.
 struct Both {
     lamp: OmniShadow,
     spot: SpotShadow,
@@ -49,7 +49,8 @@ impl Both {
         }
     }
 
-    /// Answers of the lamp, and of the spot that shines along the floor and a little down.
+    /// Returns the visibilities of the point light, and of the spot light that shines along the floor and a little
+    /// down.
     fn look(&mut self, meshes: &[Mesh], light: DVec3, points: &[Point]) -> [Vec<f32>; 2] {
         let gpu = gpu();
         let scene = scene(meshes);
@@ -82,15 +83,16 @@ impl Both {
     }
 }
 
-/// A step of 8 bits.
+/// Is a step of 8 bits.
 const STEP: f32 = 1.0 / 255.0;
 
-/// Heights above the floor as shares of the range. From the lowest, light reaches the floor's far end at 0.006 degrees.
+/// Are heights above the floor as fractions of the range. From the lowest, light reaches the floor's far end at 0.006
+/// degrees.
 const HEIGHTS: [f64; 4] = [1e-4, 1e-3, 1e-2, 0.1];
 
-/// The floor, which is in the maps, is lit all over, from under the light to the end of its range: no tolerance but a step of 8
-/// bits, by the derivation of the bias. A wall at half the range is lit on the light's side, farther above the floor than the
-/// kernels reach, and what stands behind it is dark.
+/// The floor, which is in the maps, is lit everywhere, from under the light to the end of its range: the only tolerance
+/// is a step of 8 bits, by the derivation of the bias. A wall at half the range is lit on the light's side, farther
+/// above the floor than the kernels reach, and what is behind it is dark.
 #[test]
 fn lights_almost_on_a_surface() {
     let floor = Mesh::floor(0.0, 12.0);
@@ -100,11 +102,11 @@ fn lights_almost_on_a_surface() {
     let mut behind = Vec::new();
     for _ in 0..2000 {
         let angle = random.range(0.0, std::f64::consts::TAU);
-        // As many near the foot as far from it.
+        // There are as many receivers near the foot as far from it.
         let away = RANGE * 10_f64.powf(random.range(-5.0, -0.01));
         let place = DVec3::new(angle.cos(), 0.0, angle.sin()) * away;
         on_floor.push(Point::rounded(place, DVec3::Y));
-        // Behind the wall as seen from the light, well inside of its outline.
+        // The position is behind the wall as seen from the light, well inside its outline.
         let place = random.point(DVec3::new(8.0, 0.5, -2.0), DVec3::new(8.0, 1.6, 2.0));
         behind.push(Point::rounded(place, DVec3::NEG_X));
     }

@@ -1,4 +1,5 @@
-//! Casters that begin before a near plane, the covered box's, the camera's or the light's: nothing of them is cut off.
+//! Tests casters that begin before a near plane, be it that of the covered box, of the camera or of the light: nothing
+//! of them is cut off.
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
@@ -17,7 +18,7 @@ use crate::support::probe::Point;
 use crate::support::random::Random;
 use crate::support::scene::{Mesh, Scene, occluded};
 
-/// A blade from below the floor to `top`, one triangle: whatever plane lies between is straddled by it.
+/// Returns a blade from below the floor to `top`, one triangle, which crosses every plane in between.
 fn blade(x: f32, z: f32, top: f32) -> Mesh {
     let corner = Vec3::new(x, -0.3, z);
     Mesh {
@@ -30,11 +31,11 @@ fn blade(x: f32, z: f32, top: f32) -> Mesh {
     }
 }
 
-/// What the sun sees of the floor against rays: settled where 48 rays around, up to a kernel away, agree.
+/// Compares the visibilities of the floor with rays, where 48 rays around, up to a kernel away, agree.
 fn compare(sun: &Sun, scene: &Scene, light: DVec3, wanted: impl Fn(DVec3) -> bool) -> [usize; 3] {
     let mut random = Random::new(83);
     let texel = sun.texel();
-    // Three texels, stretched by the slant of the light.
+    // The distance is three texels, stretched by the slant of the light.
     let around = 3.0 * texel * light.length() / light.y.abs();
     let (mut points, mut truth) = (Vec::new(), Vec::new());
     for _ in 0..4000 {
@@ -60,8 +61,8 @@ fn compare(sun: &Sun, scene: &Scene, light: DVec3, wanted: impl Fn(DVec3) -> boo
     [wrong.count(), dark, truth.len() - dark]
 }
 
-/// Casters that stand in the covered box or in the camera's volume and reach out of it toward the sun, through the camera's near
-/// plane or behind it, up to a hundred kilometres, and others that lie outside altogether.
+/// Casters in the covered box or in the camera's volume extend out of it toward the sun, through the camera's near
+/// plane or behind it, up to a hundred kilometres; others lie outside completely.
 #[test]
 fn nothing_is_cut_off_on_the_way_from_the_sun() {
     let cover = Aabb::new(Vec3::new(-5.0, -0.1, -5.0), Vec3::new(5.0, 0.4, 5.0));
@@ -70,7 +71,7 @@ fn nothing_is_cut_off_on_the_way_from_the_sun() {
         near: 1.0,
         far: 60.0,
     };
-    // Its near plane cuts the blades, and some stand behind it.
+    // The camera's near plane cuts the blades, and some of them are behind it.
     let camera = Camera {
         pose: Pose::looking_at(DVec3::new(0.3, 3.0, 3.9), DVec3::new(0.1, 0.0, -1.0)),
         lens,
@@ -124,7 +125,8 @@ fn nothing_is_cut_off_on_the_way_from_the_sun() {
     );
 }
 
-/// A hall around a light, and long walls of two triangles that pass beside, above and below it, from far behind to far before.
+/// Returns a hall around a light, and long walls of two triangles that pass beside, above and below it, from far behind
+/// to far ahead.
 fn hall() -> Scene {
     let plank = |low: Vec3, high: Vec3| Mesh::cuboid(low, high);
     scene(&[
@@ -135,7 +137,7 @@ fn hall() -> Scene {
     ])
 }
 
-/// Walls whose triangles lie on both sides of the light's own planes are cut where the light is and nowhere else.
+/// Walls whose triangles lie on both sides of the light's own planes are cut at the light and nowhere else.
 #[test]
 fn nothing_is_cut_off_beside_a_light() {
     let gpu = gpu();

@@ -1,4 +1,4 @@
-//! A sun, its probe, and boxes on a floor whose truth is known.
+//! Provides a sun, its probe, and boxes on a floor whose truth is known.
 
 use glam::{DMat3, DVec3, Mat4, Vec3};
 use wgpu_shadows::{
@@ -14,14 +14,14 @@ use crate::support::random::Random;
 use crate::support::random_scene::World;
 use crate::support::scene::{Mesh, Scene, default_pipeline};
 
-/// A sum of at most 64 weights in f32, stretched three times by the default's sharpness.
+/// Bounds the rounding of a sum of at most 64 weights in f32, stretched three times by the default's sharpness.
 pub const SUM_ERROR: f32 = 192.0 * f32::EPSILON;
 
-/// Texels by which a settled receiver lies away from every edge of a shadow: the default kernel reaches 2 per axis, at most
-/// 2.83 to its corner; the rest is for the snapping of vertices.
+/// Is the distance in texels of a settled receiver from every edge of a shadow: the default kernel reaches 2 per axis,
+/// at most 2.83 to its corner; the rest is for the snapping of vertices.
 pub const MARGIN: f64 = 3.0;
 
-/// A sun with the probe that asks it.
+/// Holds a sun with the probe that samples it.
 pub struct Sun {
     pub shadow: DirectionalShadow,
     pub probe: SunProbe,
@@ -37,7 +37,7 @@ impl Sun {
         }
     }
 
-    /// One map of the default filter.
+    /// Makes a sun with one map and the default filter.
     pub fn of_size(map_size: u32) -> Self {
         Self::new(&DirectionalShadowDescriptor {
             map_size,
@@ -67,14 +67,14 @@ impl Sun {
         self.probe.ask(gpu(), points)
     }
 
-    /// Side of a texel of the first view.
+    /// Returns the side of a texel of the first view.
     pub fn texel(&self) -> f64 {
         let view = self.shadow.maps().views().next().expect("a view");
         f64::from(view.texel_size_world().max_element())
     }
 }
 
-/// Boxes on, above and high above a floor at height zero, off every dyadic grid.
+/// Returns boxes on, above and high above a floor at height zero, off every dyadic grid.
 pub fn boxes() -> Vec<(DVec3, DVec3)> {
     let mut random = Random::new(17);
     let base = [0.0, 0.0, 0.0, 0.71, 1.37, 2.93];
@@ -88,7 +88,7 @@ pub fn boxes() -> Vec<(DVec3, DVec3)> {
         .collect()
 }
 
-/// The boxes as a world, for its truth.
+/// Returns the boxes as a world, for its truth.
 pub fn world(light: DVec3, camera: Camera) -> World {
     World {
         boxes: boxes(),
@@ -101,12 +101,13 @@ pub fn world(light: DVec3, camera: Camera) -> World {
     }
 }
 
-/// A camera for worlds that are not looked at.
+/// Returns a camera for worlds that are not looked at.
 pub fn any_camera() -> Camera {
     Camera::modern(DVec3::new(9.0, 7.0, 11.0), DVec3::ZERO, 1.0, 1.5)
 }
 
-/// The meshes of `boxes` and of a floor that reaches `half` from the middle, turned by `turn` and moved by `shift`.
+/// Returns the meshes of `boxes` and of a floor that extends `half` from the middle, rotated by `turn` and moved by
+/// `shift`.
 pub fn meshes(boxes: &[(DVec3, DVec3)], half: f32, turn: DMat3, shift: DVec3) -> Vec<Mesh> {
     let cuboids = boxes
         .iter()
@@ -122,7 +123,7 @@ pub fn meshes(boxes: &[(DVec3, DVec3)], half: f32, turn: DMat3, shift: DVec3) ->
         .collect()
 }
 
-/// Bounds of all of `meshes`.
+/// Returns the bounds of all of `meshes`.
 pub fn bounds_of(meshes: &[Mesh]) -> Aabb {
     meshes
         .iter()
@@ -133,17 +134,17 @@ pub fn scene(meshes: &[Mesh]) -> Scene {
     Scene::new(gpu(), meshes)
 }
 
-/// A mesh as the only caster.
+/// Returns a mesh as the only caster.
 pub fn caster(gpu: &Gpu, mesh: &Mesh, transform: Mat4) -> wgpu_shadows::MeshCaster {
     mesh.caster(gpu, &default_pipeline(gpu), transform)
 }
 
-/// Are two answers further apart than `band`, or not numbers?
+/// Returns whether two visibilities are further apart than `band`, or are NaN.
 pub fn differ(a: f32, b: f32, band: f32) -> bool {
     !(0.0..=band).contains(&(a - b).abs())
 }
 
-/// What was found of receivers whose truth is settled.
+/// Counts what was found at receivers whose truth is settled.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Verdict {
     pub dark: usize,
@@ -153,7 +154,8 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// Compares the answers of receivers at `places` with the truth, where that is settled for `margin` texels around.
+    /// Compares the visibilities of receivers at `places` with the truth, where that is settled for `margin` texels
+    /// around.
     pub fn of(world: &World, places: &[DVec3], seen: &[f32], texel: f64, margin: f64) -> Self {
         let mut verdict = Self::default();
         for (place, seen) in places.iter().zip(seen) {
@@ -176,7 +178,7 @@ impl Verdict {
         self.wrong += usize::from(differ(seen, wanted, SUM_ERROR));
     }
 
-    /// Nothing is wrong, and there was enough to be wrong about.
+    /// Asserts that nothing is wrong, and that there were enough receivers of each kind.
     pub fn assert_right(&self, what: &str) {
         let enough = self.dark.min(self.lit) >= 20;
         assert!(
@@ -186,7 +188,7 @@ impl Verdict {
         );
     }
 
-    /// For the table.
+    /// Returns the counts in words, for the table.
     pub fn words(&self) -> String {
         let settled = self.dark + self.lit;
         format!("{} wrong of {settled} settled receivers", self.wrong)
@@ -200,12 +202,12 @@ impl Verdict {
     }
 }
 
-/// `light` shining with +Y up.
+/// Returns a light along `light` with +Y as the up axis.
 pub fn shining(light: DVec3) -> DirectionalLight {
     DirectionalLight::new(light.as_vec3())
 }
 
-/// Level receivers at `places`, moved by `shift`.
+/// Returns level receivers at `places`, moved by `shift`.
 pub fn level(places: &[DVec3], shift: DVec3) -> Vec<Point> {
     places
         .iter()

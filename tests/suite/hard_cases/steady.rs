@@ -1,4 +1,4 @@
-//! A still scene under a moving camera: what stands still in the world keeps its shadow.
+//! Tests a static scene under a moving camera: what does not move in the world keeps its shadow.
 
 use std::f64::consts::TAU;
 
@@ -15,7 +15,7 @@ use crate::support::scene::Mesh;
 
 const LIGHT: DVec3 = DVec3::new(0.37, -1.0, 0.21);
 
-/// A camera that trembles by a fraction of a texel and turns by a fraction of a pixel.
+/// Returns a camera that jitters by a fraction of a texel and turns by a fraction of a pixel.
 fn trembling(frame: u32) -> Camera {
     let t = f64::from(frame);
     let tremble = DVec3::new((t * 0.71).sin(), (t * 0.53).cos(), (t * 0.37).sin()) * 0.004;
@@ -24,7 +24,7 @@ fn trembling(frame: u32) -> Camera {
     Camera::modern(eye, DVec3::new(0.2, 0.4, -0.3) + turn, 0.9, 1.6)
 }
 
-/// Places of the floor in and around the boxes' shadows.
+/// Returns positions of the floor in and around the boxes' shadows.
 fn samples() -> Vec<DVec3> {
     world(LIGHT, trembling(0))
         .floor_around_shadows(1024)
@@ -33,8 +33,8 @@ fn samples() -> Vec<DVec3> {
         .collect()
 }
 
-/// As long as the fitted views are the same, no sample changes by a bit, wherever the world lies; and they are the same in all
-/// but a twentieth of the frames.
+/// As long as the fitted views are the same, no sample changes by a bit, wherever the world lies; and they are the same
+/// in all but a twentieth of the frames.
 #[test]
 fn a_trembling_camera_leaves_shadows_alone() {
     let scene = scene(&meshes(&boxes(), 40.0, DMat3::IDENTITY, DVec3::ZERO));
@@ -77,9 +77,9 @@ fn a_trembling_camera_leaves_shadows_alone() {
     );
 }
 
-/// An engine that renders relative to its camera gives every sample new f32 coordinates in every frame. They err by `4u` of the
-/// distance each and texel coordinates by `14uN` more; a sample answers no steeper than the sharpness of three per texel and axis. Only where a comparison is a tie
-/// can more change: at most one sample in five hundred.
+/// An engine that renders relative to its camera gives every sample new f32 coordinates in every frame. They err by
+/// `4u` of the distance each, and texel coordinates by `14uN` more; a sample changes by no more than the sharpness of
+/// three per texel and axis. Only where a comparison is a tie can more change: at most one sample in five hundred.
 #[test]
 fn a_trembling_origin_leaves_shadows_alone() {
     let samples = samples();
@@ -89,7 +89,7 @@ fn a_trembling_origin_leaves_shadows_alone() {
         let mut first: Option<Vec<f32>> = None;
         let (mut flips, mut texel) = (0, None);
         for frame in 0..60 {
-            // The engine's f32 eye, exact in f64; coordinates relative to it are what is rounded.
+            // The camera's position is in f32, exact in f64; coordinates relative to it are rounded.
             let mut camera = trembling(frame);
             let eye = camera.pose.eye;
             camera.pose.eye = DVec3::ZERO;
@@ -102,7 +102,7 @@ fn a_trembling_origin_leaves_shadows_alone() {
                 &[],
             );
             let seen = sun.ask(&level(&samples, -eye));
-            // A window of another size is another picture.
+            // Light-space bounds of another size give another image.
             if texel != Some(sun.texel()) {
                 texel = Some(sun.texel());
                 first = None;
@@ -125,7 +125,7 @@ fn a_trembling_origin_leaves_shadows_alone() {
     );
 }
 
-/// A town of houses along streets.
+/// Returns a town of houses along streets.
 fn town() -> Vec<Mesh> {
     let mut random = Random::new(29);
     let mut meshes = vec![Mesh::floor(0.0, 150.0)];
@@ -138,9 +138,9 @@ fn town() -> Vec<Mesh> {
     meshes
 }
 
-/// A camera that walks (1.5 units a second at 60 frames) and turns (20 degrees a second) through a town. A window that keeps its
-/// texel moves by whole texels, which nobody sees; one that takes another rung is seen, and of four cascades' windows at most a
-/// twentieth do so from one frame to the next.
+/// A camera walks (1.5 units a second at 60 frames) and turns (20 degrees a second) through a town. Light-space bounds
+/// that keep their texel size move by whole texels, which is invisible; those that take another size step are visible,
+/// and of the four cascades' bounds at most a twentieth do so from one frame to the next.
 #[test]
 fn windows_rarely_change_in_a_walk_through_a_town() {
     const FRAMES: u32 = 400;
@@ -189,12 +189,13 @@ fn windows_rarely_change_in_a_walk_through_a_town() {
         ),
     );
     assert!(share(rescaled) <= 5.0, "{rescaled:?} of {FRAMES}");
-    // A window that followed every motion of the camera would move in every frame.
+    // Bounds that followed every motion of the camera would move in every frame.
     assert!(share(moved) <= 20.0, "{moved:?} of {FRAMES}");
 }
 
-/// A window that moves does so by whole texels: where the texel stays, what the camera sees before and after keeps its shadow
-/// to the rounding of texel coordinates (`56uN` in all, times the sharpness), but for ties of comparisons: one in five hundred.
+/// Light-space bounds move by whole texels: where the texel size stays, what the camera sees before and after keeps its
+/// shadow to the rounding of texel coordinates (`56uN` in all, times the sharpness), except for ties of comparisons:
+/// one in five hundred.
 #[test]
 fn a_window_that_moves_leaves_shadows_alone() {
     const MAP_SIZE: u32 = 512;

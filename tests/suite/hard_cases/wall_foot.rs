@@ -1,4 +1,4 @@
-//! Where a wall stands on a floor: its shadow begins at its foot.
+//! Tests where a wall stands on a floor: its shadow begins at its foot.
 
 use std::f64::consts::SQRT_2;
 
@@ -16,22 +16,22 @@ use crate::support::probe::Point;
 use crate::support::random::Random;
 use crate::support::scene::Mesh;
 
-/// Receivers to the texel, on lines that lead away from the wall.
+/// Is the number of receivers per texel, on lines that lead away from the wall.
 const STEPS: usize = 16;
-/// Texels that a line is long at most.
+/// Is the greatest length of a line in texels.
 const LONGEST: f64 = 8.0;
 const HEIGHT: f32 = 12.0;
 
-/// What stands on the floor.
+/// Describes what stands on the floor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Wall {
-    /// A sheet without thickness.
+    /// Is a sheet without thickness.
     Sheet,
-    /// A solid of which the map holds the far sides, which touch the floor where the shadow begins.
+    /// Is a solid of which the map contains the far sides, which touch the floor where the shadow begins.
     BackOfSolid,
 }
 
-/// A wall along `along`, whose shaded side begins at the line through `foot`.
+/// Returns a wall along `along`, whose shaded side begins at the line through `foot`.
 fn mesh(wall: Wall, foot: DVec3, along: DVec3, toward_light: DVec3) -> Mesh {
     let (u, up) = ((along * 8.0).as_vec3(), Vec3::Y * HEIGHT);
     let corner = (foot - along * 4.0).as_vec3();
@@ -39,7 +39,8 @@ fn mesh(wall: Wall, foot: DVec3, along: DVec3, toward_light: DVec3) -> Mesh {
     if wall == Wall::Sheet {
         return sheet;
     }
-    // A box 2 thick toward the light: the same sheet, its twin, a top, a bottom and two sides, outward faces counter-clockwise.
+    // The wall is a box 2 thick toward the light: the same sheet, its parallel, a top, a bottom and two sides, with
+    // outward faces counter-clockwise.
     let thick = (toward_light * 2.0).as_vec3();
     let at = |k: u32| {
         let pick = |bit: u32, v: Vec3| if k >> bit & 1 == 1 { v } else { Vec3::ZERO };
@@ -67,7 +68,8 @@ fn mesh(wall: Wall, foot: DVec3, along: DVec3, toward_light: DVec3) -> Mesh {
     }
 }
 
-/// Texels from the foot, as the light sees them, at which the last receiver is half lit, and at which the last is lit at all.
+/// Returns the distances in texels from the foot, as the light sees them, at which the last receiver is half lit, and
+/// at which the last is lit at all.
 fn gaps(sun: &mut Sun, wall: Wall, elevation: f64, heading: f64, random: &mut Random) -> DVec2 {
     let gpu = gpu();
     let along = DVec3::new(heading.cos(), 0.0, heading.sin());
@@ -100,7 +102,7 @@ fn gaps(sun: &mut Sun, wall: Wall, elevation: f64, heading: f64, random: &mut Ra
         .reject_from_normalized(light)
         .reject_from_normalized(line)
         .length();
-    // No farther than the wall's shadow and the covered floor reach.
+    // The line is no longer than the wall's shadow and the covered floor.
     let long = (LONGEST
         .min(2.5 * shortened / texel)
         .min(0.8 * f64::from(HEIGHT) * elevation.cos() / texel)
@@ -124,10 +126,10 @@ fn gaps(sun: &mut Sun, wall: Wall, elevation: f64, heading: f64, random: &mut Ra
     worst
 }
 
-/// Seen along the light, what a texel holds is that of its centre, half a diagonal away at most, so the middle of the edge lies
-/// within 0.71 texels of the foot; the residual offset moves it by 0.1 √2 sin² cos ≤ 0.06, and receivers are 1/16 apart. Light
-/// comes in as far as the kernel reaches, √2 K, and no farther: under the derived bias there is no strip of light at a foot, at
-/// any elevation of the light.
+/// Seen along the light, a texel has the depth of its centre, half a diagonal away at most, so the middle of the edge
+/// lies within 0.71 texels of the foot; the residual offset moves it by 0.1 √2 sin² cos ≤ 0.06, and receivers are 1/16
+/// apart. Light comes in as far as the kernel reaches, √2 K, and no farther: under the derived bias there is no strip
+/// of light at a foot, at any elevation of the light.
 #[test]
 fn shadows_begin_at_the_foot_of_a_wall() {
     let step = 1.0 / STEPS as f64;
