@@ -4,7 +4,7 @@
 use glam::DVec3;
 
 use crate::cast::ViewDraws;
-use crate::fit::{LightAxes, LocalFit, LocalInput, MAX_LOCAL_VIEWS, Reached};
+use crate::fit::{LightAxes, LocalFit, LocalInput, MAX_LOCAL_VIEWS, PerspectiveView, Reached};
 use crate::receive::{LayerState, MapsFrame, ShadowMaps};
 use crate::{ShadowError, ShadowFrame, ShadowView, report::ShadowReport};
 
@@ -12,6 +12,8 @@ use crate::{ShadowError, ShadowFrame, ShadowView, report::ShadowReport};
 #[derive(Debug)]
 pub(crate) struct LocalLights {
     slots: Vec<SlotState>,
+    /// The device clips depth to -1..1.
+    has_symmetric_clip_depth: bool,
     /// Empty between frames; kept for their memory.
     candidates: Vec<Candidate>,
     layers: Vec<LayerState>,
@@ -29,6 +31,8 @@ struct SlotState {
     views: [Option<ShadowView>; MAX_LOCAL_VIEWS],
     /// Where it stood then.
     position_world: DVec3,
+    /// How far it shone then.
+    range: f32,
 }
 
 /// A light of a frame.
@@ -63,9 +67,10 @@ struct Candidate {
 const LEAST_SHARE_OF_IMPORTANCE: f64 = 1.0 / 4096.0;
 
 impl LocalLights {
-    /// For `capacity` lights.
-    pub fn new(capacity: u32) -> Self {
+    /// For `capacity` lights of a device.
+    pub fn new(device: &wgpu::Device, capacity: u32) -> Self {
         Self {
+            has_symmetric_clip_depth: device.adapter_info().backend == wgpu::Backend::Gl,
             slots: vec![SlotState::default(); capacity as usize],
             candidates: Vec::new(),
             layers: Vec::new(),
@@ -103,15 +108,15 @@ impl LocalLights {
             let first_layer = light.slot * light.view_count;
             let state = &self.slots[light.slot as usize];
             // A light that is put off is asked where it stood when its map was drawn.
-            let (position_world, reach_world) = if candidate.refreshed || !state.has_map {
-                (light.position_world, candidate.fit.reach)
+            let (position_world, range) = if candidate.refreshed || !state.has_map {
+                (light.position_world, light.range)
             } else {
-                (state.position_world, state.fit.reach)
+                (state.position_world, state.range)
             };
             layers.extend((0..light.view_count).map(|view| LayerState {
                 layer: first_layer + view,
                 anchor_render: (position_world - frame.origin).as_vec3(),
-                reach_world,
+                range_world: f64::from(range),
                 deferred: !candidate.refreshed,
                 slice: None,
             }));
@@ -147,6 +152,7 @@ impl LocalLights {
                     has_map: true,
                     views: candidate.views,
                     position_world: light.position_world,
+                    range: light.range,
                 };
             } else {
                 state.waited = state.waited.saturating_add(1);
@@ -190,15 +196,19 @@ impl LocalLights {
                 maps.return_list(drawn);
                 continue;
             };
-            let view = ShadowView::perspective(
+            let layer = light.slot * light.view_count + index as u32;
+            let view = PerspectiveView {
                 axes,
-                light.position_world,
+                position_world: light.position_world,
                 rect,
-                &fit,
-                light.cone_cosine,
-                frame.origin,
-                light.slot * light.view_count + index as u32,
-            );
+                near: fit.near[index],
+                caster_reach: fit.caster_reach[index],
+                has_symmetric_clip_depth: self.has_symmetric_clip_depth,
+                reach: fit.reach,
+                range: f64::from(light.range),
+                cone_cosine: light.cone_cosine,
+            };
+            let view = ShadowView::perspective(&view, frame.origin, layer);
             let view = view.checked()?;
             let view_draws = ViewDraws::new(view, drawn);
             needed += maps.passes(&view_draws, &frame.casters);

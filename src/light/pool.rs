@@ -184,7 +184,7 @@ macro_rules! pool {
                 )?;
                 Ok(Self {
                     maps,
-                    lights: LocalLights::new(descriptor.capacity),
+                    lights: LocalLights::new(device, descriptor.capacity),
                     slots: Slots {
                         tickets: vec![None; descriptor.capacity as usize],
                         seen: Vec::new(),

@@ -38,7 +38,10 @@ impl Default for SpotShadowDescriptor<'_> {
 /// A light at a place that shines into a cone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpotLight {
-    /// Absolute world position (f64); what is nearer to it along its axis than 1/1024 of its reach casts nothing.
+    /// Absolute world position (f64). The near plane of the map is at the bounds of the nearest caster, but no nearer than
+    /// 1/1024 of half their largest side. Where bounds contain the light, as those of a lamp shade or of a room do, it is at
+    /// 1/16 of half their smallest side. Both limits are at most 1/1024 of the distance to the farthest receiver that is
+    /// seen. What lies before the near plane casts nothing.
     pub position_world: DVec3,
     /// Direction in which it shines, any length but zero; world axes.
     pub direction: Vec3,
@@ -46,7 +49,8 @@ pub struct SpotLight {
     /// visibility is 1: attenuation belongs to the engine. A map is flat, so its texels grow toward the rim; from
     /// [`SpotLight::WIDEST_SENSIBLE_OUTER_ANGLE`] on, a point light of the same memory is finer in the middle.
     pub outer_angle_radians: f32,
-    /// Distance in world units beyond which the light neither draws casters nor shadows receivers; above 0, infinity allowed.
+    /// Distance in world units beyond which the light neither draws casters nor shadows receivers; above 0, infinity allowed. An
+    /// end that is far away costs no precision: maps are fitted to what is seen within it.
     pub range: f32,
 }
 
@@ -90,7 +94,7 @@ impl SpotShadow {
         )?;
         Ok(Self {
             maps,
-            lights: LocalLights::new(1),
+            lights: LocalLights::new(device, 1),
         })
     }
 

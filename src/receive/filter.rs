@@ -78,7 +78,8 @@ pub enum Filter {
         radius: f32,
     },
     /// Point lights only: the textbook's nearest comparisons in 20 fixed directions, over a radius that grows with the distance
-    /// from the viewer (by the share of the light's reach), where the frame tells of a camera.
+    /// from the viewer (by its share of the light's range, so not at all where the range is endless), where the frame
+    /// tells of a camera.
     ///
     /// A third of the cost of `DirectionGrid`; its steps of 1/20 show as bands where the radius spans many texels.
     DirectionStar {

@@ -61,8 +61,8 @@ pub(crate) struct LayerState {
     pub layer: u32,
     /// The place of a local light.
     pub anchor_render: Vec3,
-    /// World distance beyond which the light does not reach; infinite for a directional one.
-    pub reach_world: f64,
+    /// World distance beyond which the light does not shine; infinite for a directional one.
+    pub range_world: f64,
     /// It needed drawing and was put off.
     pub deferred: bool,
     /// Of a cascade of a camera's view.
@@ -74,7 +74,7 @@ impl LayerState {
         Self {
             layer,
             anchor_render: Vec3::ZERO,
-            reach_world: f64::INFINITY,
+            range_world: f64::INFINITY,
             deferred: false,
             slice,
         }
@@ -275,7 +275,7 @@ impl ShadowMaps {
         uniforms.extend((0..layer_count).map(|layer| empty_view_uniform(layer, Vec3::ZERO)));
         for base in layers {
             uniforms[base.layer as usize] = ShadowViewUniform {
-                range: endless_range(base.reach_world),
+                range: endless_range(base.range_world),
                 ..empty_view_uniform(base.layer, base.anchor_render)
             };
         }

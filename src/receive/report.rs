@@ -36,9 +36,11 @@ pub struct ViewReport {
     pub triangles: u64,
     /// Casters left out because nothing of them can fall on what the view covers.
     pub culled: u32,
-    /// World size of a texel along the map's x and y; for a local light at the end of its reach, where it is largest.
+    /// World size of a texel along the map's x and y; for a local light that at the farthest receiver that is seen within its
+    /// range, where it is largest.
     pub texel_size_world: Vec2,
-    /// World distance from the near plane to the far plane, or to the end of a local light's reach.
+    /// World distance from the near plane to the far plane, or for a local light to the farthest receiver that is seen within
+    /// its range, rounded up by at most 1.19.
     pub depth_range_world: f32,
     /// Height in world units above which a caster that lies on a surface always casts onto it: the worst gap (peter-panning)
     /// that the light's bias can leave, at the worst angle.

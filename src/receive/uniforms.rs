@@ -38,7 +38,8 @@ pub struct ShadowViewUniform {
     pub lateral_error: f32,
     /// Offset along the normal in texels times |nx| + |ny|.
     pub offset_texels: f32,
-    /// Offset along the normal in world units.
+    /// World distance by which a receiver's plane is moved for the rounding of render coordinates: along the normal, or toward a
+    /// local light. Around that, 2^-22 of the receiver's distance along the axis on which it is largest is added.
     pub offset_world: f32,
     /// Manual bias: constant, world units.
     pub manual_constant: f32,
@@ -46,7 +47,7 @@ pub struct ShadowViewUniform {
     pub manual_slope: f32,
     /// Edge sharpness.
     pub sharpness: f32,
-    /// World distance from the anchor beyond which a local light does not reach; huge for a directional one.
+    /// World distance from the anchor beyond which a local light does not shine; huge for an endless one and a directional one.
     pub range: f32,
     /// Cosine of the half-angle of a cone around the view's axis; -2 for none.
     pub cone_cosine: f32,
@@ -68,8 +69,8 @@ pub(crate) fn view_uniform_bytes(views: u64) -> u64 {
 }
 
 /// A range for the uniforms: an endless one becomes a distance that none exceeds and whose square is finite.
-pub(crate) fn endless_range(reach_world: f64) -> f32 {
-    reach_world.min(1e18) as f32
+pub(crate) fn endless_range(range_world: f64) -> f32 {
+    range_world.min(1e18) as f32
 }
 
 /// How the maps of a light are looked up.
@@ -158,7 +159,7 @@ pub(crate) fn view_uniform(view: &ShadowView, sampling: &Sampling) -> ShadowView
         manual_constant,
         manual_slope,
         sharpness: sampling.filter.sharpness(),
-        range: endless_range(view.reach_world()),
+        range: endless_range(view.range_world()),
         cone_cosine: view.cone_cosine() as f32,
         sample_radius: sampling.filter.radius_world(),
         viewer: [0.0; 4],
