@@ -13,13 +13,13 @@ fn shadow_receiver_normal_offset(
     position: vec3<f32>,
     normal: vec3<f32>,
 ) -> ShadowReceiver {
-    let relative = position - view.anchor;
+    let relative = shadow_clear_of_rounding(view, position - view.anchor, normal);
     let plane = shadow_plane(view, relative, normal);
     let texels = view.offset_texels + view.lateral_error;
     let offset = shadow_normal_offset(view, relative, plane, texels);
     // This is the growth of w along the normal, which is zero for an orthographic view.
     let growth = texels * (abs(plane.x) + abs(plane.y)) * max(dot(shadow_w_row(view).xyz, normal), 0.0);
-    let distance = offset / (1.0 - min(growth, 0.9)) + view.offset_world;
+    let distance = offset / (1.0 - min(growth, 0.9)) + shadow_rounding_offset(view);
     // Where the kernel reaches past the horizon of the surface, no offset prevents self-shadowing. Such a position is
     // lit: its depth is set nearer than any in the map.
     let hopeless = (growth >= 0.9) | (distance >= shadow_light_height(view, relative, normal));

@@ -15,9 +15,9 @@ const SHADOW_MAX_GRADIENT: f32 = 1e4;
 
 // Returns the receiver at `position` (render space) with the gradient of its tangent plane.
 fn shadow_receiver_plane(view: ShadowViewUniform, position: vec3<f32>, normal: vec3<f32>) -> ShadowReceiver {
-    let relative = position - view.anchor;
+    let relative = shadow_clear_of_rounding(view, position - view.anchor, normal);
     let surface = shadow_plane(view, relative, normal);
-    let wanted = shadow_normal_offset(view, relative, surface, view.offset_texels) + view.offset_world;
+    let wanted = shadow_normal_offset(view, relative, surface, view.offset_texels) + shadow_rounding_offset(view);
     // The offset never reaches past the light: under the widest cones a texel is larger than the light's height above
     // the surface.
     let offset = min(wanted, 0.5 * shadow_light_height(view, relative, normal));

@@ -31,14 +31,15 @@ struct ShadowViewUniform {
     lateral_error: f32,
     // Is the offset along the normal, in texels times |nx| + |ny| of the normal in light space.
     offset_texels: f32,
-    // Is the offset along the normal in world units that allows for the rounding of render coordinates.
+    // Distance in world units by which a receiver's plane is moved, for the rounding of render coordinates. Of a local light only
+    // what is the same for all receivers: shadow_clear_of_rounding adds what grows with the distance from it.
     offset_world: f32,
     // Are the parameters of the manual bias, in world units.
     manual_constant: f32,
     manual_slope: f32,
     // Is the edge sharpness of gathered filters; 1 leaves their ramp as it is.
     sharpness: f32,
-    // Is the world distance from the anchor beyond which a local light does not reach.
+    // World distance from the anchor beyond which a local light does not shine.
     range: f32,
     // Is the cosine of the half-angle of the cone around the view's axis; -2 if there is no cone.
     cone_cosine: f32,
@@ -180,6 +181,28 @@ fn shadow_normal_offset(
 ) -> f32 {
     let w = dot(shadow_w_row(view), vec4<f32>(relative, 1.0));
     return texels * max(w, 0.0) * (abs(plane.x) + abs(plane.y));
+}
+
+// Is the rounding of a render coordinate of a caster or a receiver, relative to the coordinate: 4u, with u = 2^-24.
+const SHADOW_POSITION_ROUNDING: f32 = 2.3841858e-7;
+
+// Returns a position around a local light (relative to the anchor), moved toward the light so far that its tangent
+// plane rises by all that rounding may displace it. The position stays on its texel, since an offset along the normal
+// could lead off the map. Everything that a receiver is compared with is no farther from the light than the receiver,
+// so the rounding grows with the receiver's own distance. Under a directional light the position is returned unchanged.
+fn shadow_clear_of_rounding(view: ShadowViewUniform, relative: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
+    let apart = abs(relative);
+    let farthest = max(max(apart.x, apart.y), apart.z);
+    let rounding = view.offset_world + SHADOW_POSITION_ROUNDING * farthest;
+    // Where the light is next to the plane, the receiver moves by half of its way to the light.
+    let share = rounding / max(shadow_light_height(view, relative, normal), 2.0 * rounding);
+    return relative * (1.0 - select(0.0, share, view.light.w > 0.0));
+}
+
+// Returns the world distance along the normal that allows for the rounding of render coordinates under a directional
+// light; 0 for a local light, which shadow_clear_of_rounding serves.
+fn shadow_rounding_offset(view: ShadowViewUniform) -> f32 {
+    return select(view.offset_world, 0.0, view.light.w > 0.0);
 }
 
 // Returns the world distance of the light from the tangent plane at a position; 1e30 for a directional light.

@@ -12,7 +12,6 @@
 use glam::Vec4;
 
 use crate::cast::{FrameCasters, ViewDraws};
-use crate::fit::ViewPlacement;
 use crate::gpu::FACE_COUNT;
 use crate::{Aabb, ShadowView};
 
@@ -63,12 +62,9 @@ pub(crate) fn one_pass_casters(
 /// of them that the light reaches. The part beyond can be seen by a view that leaves the caster out, so that one pass
 /// would draw it there while a pass for each face would not.
 fn may_show_beyond_reach(bounds: &Aabb, view: &ShadowView) -> bool {
-    let ViewPlacement::Perspective { reach, .. } = view.placement() else {
-        return true;
-    };
     let light = view.anchor_render();
     let farthest = (bounds.max - light).max(light - bounds.min).max_element();
-    if f64::from(farthest) <= *reach {
+    if f64::from(farthest) <= view.reach_world() {
         return false;
     }
     let clip_from_anchor = view.clip_from_anchor();

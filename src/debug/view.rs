@@ -34,8 +34,8 @@ pub enum DebugImage {
     PoolCross(u32),
 }
 
-/// Draws depth maps as grey levels: black at the light, white at the far plane or at the end of the light's reach, and
-/// white where nothing casts. Depths of local lights are shown as linear distance.
+/// Draws depth maps as grey levels: black at the light, white at the far plane, or for a local light where the last receiver is seen
+/// within its range, and where nothing casts. Depths of local lights are shown as linear distance.
 #[derive(Debug)]
 pub struct DebugView {
     device: wgpu::Device,
@@ -138,6 +138,13 @@ impl DebugView {
         let shown = &sampled.uniforms[first_layer as usize..];
         for (view, uniform) in views.iter_mut().zip(shown) {
             *view = *uniform;
+        }
+        // White is where the last receiver is seen, however far the light shines.
+        for drawn in maps.views() {
+            let index = drawn.layer().checked_sub(first_layer);
+            if let Some(view) = index.and_then(|index| views.get_mut(index as usize)) {
+                view.range = view.range.min(drawn.reach_world() as f32);
+            }
         }
         let local = shown.iter().any(|view| view.light[3] > 0.0);
         let header = DebugUniform {

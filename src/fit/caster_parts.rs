@@ -9,7 +9,7 @@ use glam::DVec3;
 use crate::Aabb;
 use crate::fit::axes::{LightAxes, LightBox};
 use crate::fit::caster_shape::CasterShape;
-use crate::fit::view::position_error_world;
+use crate::fit::view_rounding::position_error_world;
 use crate::fit::visible::SeenReceiver;
 
 /// Is the largest number of casters that are divided into parts, so that the cost stays proportional to the number of

@@ -1,5 +1,4 @@
-//! Fits the views of a local light: the part of each that receivers and casters share, and one near plane for all of
-//! them.
+//! Fits the views of a local light: the part of each that receivers and casters share, and its near plane.
 //!
 //! Map coordinates of a perspective view are tangents, x / w and y / w with w the distance along the view's axis, and
 //! ndc depth is near / w (reversed, infinite far plane): its relative error is that of f32 at any distance.
@@ -12,25 +11,25 @@ use crate::fit::local_input::LocalInput;
 use crate::fit::map_rect::{HeldRect, MapRect, MapRectRequest};
 use crate::fit::reached::{self, Reached};
 use crate::fit::region::{HalfSpace, HalfSpaces, Relation};
+use crate::fit::size_step::HeldSize;
 
 /// Is the largest number of views of one local light.
 pub(crate) const MAX_LOCAL_VIEWS: usize = 6;
 
-/// Is the distance of the nearest near plane, as a share of the light's reach. The rasteriser interpolates near / w in
-/// f32: across a triangle that starts at the near plane its error at distance w is w² / near · 2⁻²⁴, at the full reach
-/// 1024 · 2⁻²⁴ = 6·10⁻⁵ of it. Casters nearer to the light than this cast nothing.
-const NEAREST_SHARE: f64 = 1.0 / 1024.0;
-
-/// Holds the map rectangles of a local light, kept from frame to frame for their hysteresis.
+/// Holds the map rectangles and near planes of a local light, kept from frame to frame for their hysteresis.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LocalFit {
     /// Holds rectangles in tangents, `None` for a view in which nothing can cast a shadow.
     pub rects: [Option<MapRect>; MAX_LOCAL_VIEWS],
     held: [Option<HeldRect>; MAX_LOCAL_VIEWS],
-    /// Is the world distance of the near plane along every view's axis.
-    pub near: f64,
-    /// Is the world distance beyond which nothing receives.
+    /// Is the world distance of each view's near plane along its axis, 0 for a view that has never been needed.
+    pub near: [f64; MAX_LOCAL_VIEWS],
+    /// Is the largest world distance, along an axis, of a corner of a caster of each view from the light.
+    pub caster_reach: [f64; MAX_LOCAL_VIEWS],
+    /// Is the world distance up to which receivers are seen, rounded up to a size step, and at most the light's range.
     pub reach: f64,
+    /// Holds the same distance before the range limits it; `None` where no receiver is seen within the range.
+    held_reach: Option<HeldSize>,
 }
 
 /// Is a rectangle of tangents.
@@ -43,6 +42,7 @@ impl LocalFit {
     /// Forgets the extents of earlier frames.
     pub fn reset_history(&mut self) {
         self.held = [None; MAX_LOCAL_VIEWS];
+        self.held_reach = None;
     }
 
     /// Returns the fit for this frame. Each list of `drawn` is filled with the indices of the casters of one view.
@@ -53,20 +53,19 @@ impl LocalFit {
         drawn: &mut [Vec<u32>],
     ) -> Self {
         let light = input.position_world - input.origin;
-        let reach = reached::reach(input, light);
+        let (reach, held_reach) = self.reach(input, light);
         let mut next = Self {
             rects: [None; MAX_LOCAL_VIEWS],
             reach,
-            near: f64::INFINITY,
-            held: self.held,
+            held_reach,
+            ..self.clone()
         };
         drawn.iter_mut().for_each(Vec::clear);
         if reach <= 0.0 {
-            next.near = 1.0;
             return next;
         }
-        let nearest = reach * NEAREST_SHARE;
         reached.find(input, light, reach);
+        let nearest = reached.nearest();
         for (index, axes) in input.views.iter().enumerate() {
             let view = ViewFrame { axes, light };
             let Some((min, max)) = view.needed(input, reached, nearest) else {
@@ -78,34 +77,67 @@ impl LocalFit {
                     max,
                     map_size: input.map_size,
                     margin_texels: input.margin_texels,
-                    texel_floor: texel_floor(light, nearest),
+                    texel_floor: texel_floor(light, reach),
                     full_half_side: input.caster_tangent,
                 },
                 self.held[index].as_ref(),
             );
             let rect = held_rect.rect;
             let region = view.region(rect.min, rect.max(), nearest);
+            let (mut near, mut caster_reach) = (f64::INFINITY, 0.0_f64);
             for caster in &reached.casters {
                 if let Some(distance) = view.nearest_within(&region, &caster.bounds) {
                     drawn[index].push(caster.index);
-                    next.near = next.near.min(distance);
+                    near = near.min(near_plane(distance, caster.nearest));
+                    caster_reach = caster_reach.max(caster.farthest_corner);
                 }
             }
             if !drawn[index].is_empty() {
                 next.rects[index] = Some(rect);
                 next.held[index] = Some(held_rect);
+                next.caster_reach[index] = caster_reach;
+                // A caster may begin where the reach ends; the view still has a depth range then.
+                next.near[index] = steady_near(near.min(0.5 * reach), self.near[index]);
             }
         }
-        // The distance is rounded down to a power of two, so that it changes rarely, but not below `nearest`. It is no
-        // farther than the reach, beyond which nothing casts.
-        next.near = next
-            .near
-            .clamp(nearest, reach)
-            .log2()
-            .floor()
-            .exp2()
-            .max(nearest);
         next
+    }
+
+    /// Returns the distance up to which the light matters: where the farthest receiver that is seen ends, and at most the
+    /// light's range. It grows with what is seen at once, and shrinks late. The second value is what is held of it.
+    fn reach(&self, input: &LocalInput<'_>, light: DVec3) -> (f64, Option<HeldSize>) {
+        // The six faces of a cube cover all directions together. The one view of a cone does not.
+        let cone = match input.views {
+            [axes] => {
+                let tangent = DVec2::splat(input.receiver_tangent);
+                ViewFrame { axes, light }.region(-tangent, tangent, 0.0)
+            }
+            _ => HalfSpaces::default(),
+        };
+        let farthest = reached::farthest_seen(input, light, &cone);
+        if farthest <= 0.0 || farthest >= input.range {
+            return (farthest.min(input.range), self.held_reach);
+        }
+        // Vertices of what is seen are found within rounding.
+        let farthest = farthest * (1.0 + 1e-6) + light.abs().max_element() * 1e-6;
+        let held = HeldSize::following(self.held_reach, farthest);
+        (held.step().min(input.range), Some(held))
+    }
+}
+
+/// Returns the near plane for a caster that begins `distance` along the axis and need not be resolved below `nearest`. The
+/// distance is rounded down to a power of two, so that it changes rarely.
+fn near_plane(distance: f64, nearest: f64) -> f64 {
+    distance.max(nearest).log2().floor().exp2().max(nearest)
+}
+
+/// Returns the near plane to use for `near` where `held` is in use: a caster that comes and goes across a power of two
+/// changes it once.
+fn steady_near(near: f64, held: f64) -> f64 {
+    if held <= near && 2.0 * held >= near {
+        held
+    } else {
+        near
     }
 }
 
@@ -246,7 +278,6 @@ impl Extent {
 /// Returns the finest texel, as a tangent: four ulps of f32 at the light's render coordinates seen from the end of its
 /// reach, and at least four ulps of one, the tangent at a view's border. Close to the light texels may be finer than
 /// positions; at the end of its reach they are not.
-fn texel_floor(light: DVec3, nearest: f64) -> f64 {
-    let reach = nearest / NEAREST_SHARE;
+fn texel_floor(light: DVec3, reach: f64) -> f64 {
     4.0 * f64::from(f32::EPSILON) * (light.abs().max_element() / reach).max(1.0)
 }

@@ -19,8 +19,9 @@
 //! cascade_bounds.rs  the light-space bounds of a cascade
 //! directional.rs  the complete fit of a directional light; directional_input.rs: its input
 //! reached.rs      what a local light reaches
+//! nearest.rs      how near to a local light its near planes may be
 //! local.rs        the complete fit of a spot or point light's views; local_input.rs: its input
-//! view.rs         ShadowView: the value that maps are rendered and sampled with
+//! view.rs         ShadowView: the value that maps are rendered and sampled with; view_rounding.rs: its rounding errors
 //! ```
 
 mod axes;
@@ -36,6 +37,7 @@ mod image_corners;
 mod local;
 mod local_input;
 mod map_rect;
+mod nearest;
 mod reached;
 mod region;
 mod required;
@@ -44,6 +46,7 @@ mod spacing;
 mod split;
 mod stability;
 mod view;
+mod view_rounding;
 mod visible;
 
 pub use axes::LightAxes;
@@ -62,5 +65,5 @@ pub use split::CascadeSplit;
 pub(crate) use split::MAX_CASCADES;
 pub use stability::Stability;
 pub use view::ShadowView;
-pub(crate) use view::ViewPlacement;
+pub(crate) use view::{PerspectiveView, ViewPlacement};
 pub(crate) use visible::Receivers;

@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use crate::Aabb;
 use crate::fit::local_input::LocalInput;
-use crate::fit::region::Relation;
+use crate::fit::nearest::nearest_for;
+use crate::fit::region::{HalfSpaces, Relation};
 
 /// Holds the casters and receivers within a light's reach, in lists that are reused from frame to frame.
 #[derive(Debug, Default)]
@@ -22,6 +23,10 @@ pub(crate) struct ReachedCaster {
     pub index: u32,
     /// Bounds the part of it within the box around the light's reach.
     pub bounds: Aabb,
+    /// Is the distance from the light below which the near plane is not moved for its sake.
+    pub nearest: f64,
+    /// Is the largest distance of its corners from the light along an axis.
+    pub farthest_corner: f64,
 }
 
 impl Reached {
@@ -39,13 +44,24 @@ impl Reached {
         self.receivers.clear();
         let casters = (0u32..).zip(input.casters);
         self.casters.extend(casters.filter_map(|(index, bounds)| {
-            near(bounds).map(|bounds| ReachedCaster { index, bounds })
+            near(bounds).map(|part| ReachedCaster {
+                index,
+                bounds: part,
+                nearest: nearest_for(bounds, light, reach),
+                farthest_corner: farthest_corner(bounds, light).max_element(),
+            })
         }));
         let receivers = input.receivers.iter().filter_map(near);
         self.receivers.extend(receivers);
         let visible = self.visible_bounds(input);
         self.casters
             .retain(|caster| can_shadow(&input.casters[caster.index as usize], &visible, light));
+    }
+
+    /// Returns the least distance from the light at which a near plane of these casters can be.
+    pub fn nearest(&self) -> f64 {
+        let each = self.casters.iter().map(|caster| caster.nearest);
+        each.fold(f64::INFINITY, f64::min)
     }
 
     /// Returns the bounds of the receivers that count.
@@ -74,21 +90,37 @@ impl Reached {
     }
 }
 
-/// Returns the distance up to which the light matters: its range, or the farthest corner of any caster or receiver
-/// where the range goes beyond that.
-pub(crate) fn reach(input: &LocalInput<'_>, light: DVec3) -> f64 {
+/// Returns the distance from the light of the farthest point of a receiver that is seen and within `cone`, or the light's
+/// range where one is farther than that; 0 where nothing is seen.
+pub(crate) fn farthest_seen(input: &LocalInput<'_>, light: DVec3, cone: &HalfSpaces) -> f64 {
     let mut farthest: f64 = 0.0;
-    for bounds in input.casters.iter().chain(input.receivers) {
-        if !bounds.is_empty() {
-            let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
-            let corner = (light - min).abs().max((light - max).abs());
-            farthest = farthest.max(corner.length());
+    for seen in input.seen {
+        let mut region = *seen;
+        cone.as_slice().iter().for_each(|plane| region.push(*plane));
+        for bounds in input.receivers.iter().filter(|bounds| !bounds.is_empty()) {
+            let corner = farthest_corner(bounds, light).length();
+            if corner <= farthest {
+                continue;
+            }
+            if region.relation(bounds) == Relation::Inside {
+                farthest = corner;
+            } else {
+                region.visit_vertices(bounds, |vertex| {
+                    farthest = farthest.max(vertex.distance(light));
+                });
+            }
             if farthest >= input.range {
                 return input.range;
             }
         }
     }
     farthest
+}
+
+/// Returns the distances of the farthest corner of a box from a point along each axis.
+fn farthest_corner(bounds: &Aabb, point: DVec3) -> DVec3 {
+    let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+    (point - min).abs().max((point - max).abs())
 }
 
 fn intersection(a: &Aabb, b: &Aabb) -> Aabb {

@@ -3,8 +3,8 @@
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, Mat4, Vec2, Vec3};
 
 use crate::ShadowError;
+use crate::fit::LightAxes;
 use crate::fit::map_rect::{LightSpaceBounds, MapRect};
-use crate::fit::{LightAxes, LocalFit};
 
 /// Describes one depth render: a cascade of a directional light, the map of a spot light, a face of a point light.
 ///
@@ -15,13 +15,24 @@ use crate::fit::{LightAxes, LocalFit};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadowView {
     layer: u32,
-    map_size: u32,
+    pub(super) map_size: u32,
     anchor_render: Vec3,
     /// Has reversed depth: near 1, far 0.
     clip_from_anchor: DMat4,
-    placement: ViewPlacement,
-    /// Is the largest f32 render coordinate that positions inside the view have.
-    render_reach: f64,
+    pub(super) placement: ViewPlacement,
+    /// Is the largest f32 render coordinate, in world units, whose rounding all positions inside the view may have. For a
+    /// local light it is the light's own, since the rounding of what it shines on grows with the distance from it; and
+    /// half of `caster_reach` more.
+    pub(super) render_reach: f64,
+    /// Is the largest world distance, along an axis, of a corner of a drawn caster from a local light; 0 for a directional
+    /// one. A large triangle is displaced everywhere by what its corners are rounded by.
+    pub(super) caster_reach: f64,
+    /// States that the device clips depth to -1..1, as OpenGL does.
+    pub(super) has_symmetric_clip_depth: bool,
+    /// Is the world distance from a local light up to which receivers are seen; infinite for a directional one.
+    pub(super) reach: f64,
+    /// Is the world distance beyond which a local light does not shine; infinite for a directional one.
+    range: f64,
 }
 
 /// Describes what a view covers, in absolute world terms: two views with equal placements render the same map of the
@@ -39,11 +50,29 @@ pub(crate) enum ViewPlacement {
         rect: MapRect,
         /// Is the world distance of the near plane.
         near: f64,
-        /// Is the world distance beyond which nothing receives.
-        reach: f64,
         /// Is the cosine of the half-angle of a cone; -2 if there is no cone.
         cone_cosine: f64,
     },
+}
+
+/// Describes the view of a local light.
+pub(crate) struct PerspectiveView<'a> {
+    pub axes: &'a LightAxes,
+    pub position_world: DVec3,
+    /// Is in tangents.
+    pub rect: &'a MapRect,
+    /// Is the world distance of the near plane along the view's axis.
+    pub near: f64,
+    /// Is the largest world distance, along an axis, of a corner of a drawn caster from the light.
+    pub caster_reach: f64,
+    /// States that the device clips depth to -1..1, as OpenGL does.
+    pub has_symmetric_clip_depth: bool,
+    /// Is the world distance up to which receivers are seen.
+    pub reach: f64,
+    /// Is the world distance beyond which the light does not shine.
+    pub range: f64,
+    /// Is the cosine of the half-angle of a cone; -2 if there is no cone.
+    pub cone_cosine: f64,
 }
 
 impl ViewPlacement {
@@ -92,20 +121,26 @@ impl ShadowView {
                 bounds: *bounds,
             },
             render_reach: f64::from(anchor_render.abs().max_element()) + half.length(),
+            caster_reach: 0.0,
+            has_symmetric_clip_depth: false,
+            reach: f64::INFINITY,
+            range: f64::INFINITY,
         }
     }
 
     /// Returns the view of a local light through a rectangle of tangents.
-    pub(crate) fn perspective(
-        axes: &LightAxes,
-        position_world: DVec3,
-        rect: &MapRect,
-        fit: &LocalFit,
-        cone_cosine: f64,
-        origin: DVec3,
-        layer: u32,
-    ) -> Self {
-        let (near, reach) = (fit.near, fit.reach);
+    pub(crate) fn perspective(local: &PerspectiveView<'_>, origin: DVec3, layer: u32) -> Self {
+        let &PerspectiveView {
+            axes,
+            position_world,
+            rect,
+            near,
+            caster_reach,
+            has_symmetric_clip_depth,
+            reach,
+            range,
+            cone_cosine,
+        } = local;
         let anchor_render = (position_world - origin).as_vec3();
         let size = rect.max() - rect.min;
         // clip = 2 (tangent - min) / size * w - w, with w = -z and tangent * w = x or y; depth * w = near.
@@ -128,10 +163,13 @@ impl ShadowView {
                 position_world,
                 rect: *rect,
                 near,
-                reach,
                 cone_cosine,
             },
-            render_reach: f64::from(anchor_render.abs().max_element()) + reach,
+            render_reach: local_render_reach(anchor_render, caster_reach),
+            caster_reach,
+            has_symmetric_clip_depth,
+            reach,
+            range,
         }
     }
 
@@ -141,47 +179,15 @@ impl ShadowView {
             ViewPlacement::Orthographic { axes, bounds } => {
                 Self::orthographic(axes, bounds, origin, self.layer)
             }
-            ViewPlacement::Perspective {
-                position_world,
-                reach,
-                ..
-            } => {
+            ViewPlacement::Perspective { position_world, .. } => {
                 let anchor_render = (*position_world - origin).as_vec3();
                 Self {
                     anchor_render,
-                    render_reach: f64::from(anchor_render.abs().max_element()) + reach,
+                    render_reach: local_render_reach(anchor_render, self.caster_reach),
                     ..*self
                 }
             }
         }
-    }
-
-    /// Returns the largest render coordinate, in world units, that positions inside the view have.
-    pub(crate) const fn render_reach(&self) -> f64 {
-        self.render_reach
-    }
-
-    /// Returns the same view over depths that were computed from render coordinates up to `render_reach`, perhaps under
-    /// another origin: whatever is compared with them must allow for their rounding as well.
-    pub(crate) const fn over_depths_from(self, render_reach: f64) -> Self {
-        Self {
-            render_reach: self.render_reach.max(render_reach),
-            ..self
-        }
-    }
-
-    /// Returns whether depths of this view that were computed from render coordinates up to `render_reach` are as good
-    /// as new ones: their rounding is at most twice that of new ones, or at most [`KEPT_ROUNDING_TEXELS`]. So a map is
-    /// kept while the origin moves with a camera, and drawn again, finer, before the rounding of distant coordinates
-    /// becomes visible.
-    pub(crate) fn may_keep_depths_from(&self, render_reach: f64) -> bool {
-        let finest_texel_world = match &self.placement {
-            ViewPlacement::Orthographic { bounds, .. } => bounds.rect.texel.min_element(),
-            ViewPlacement::Perspective { rect, near, .. } => rect.texel.min_element() * near,
-        };
-        let rounding_world = position_error_world(render_reach);
-        rounding_world <= 2.0 * self.position_error_world()
-            || rounding_world <= KEPT_ROUNDING_TEXELS * finest_texel_world
     }
 
     /// Returns the view if its matrices and its position can be expressed in f32. The fit has checked whether f64
@@ -192,8 +198,15 @@ impl ShadowView {
         let extent = f64::from(self.texel_size_world().max_element()) * f64::from(self.map_size);
         let extent = extent.max(f64::from(self.depth_range_world()));
         let small = f64::from(self.texel_size_world().min_element());
+        // The far corners of casters are clipped away; they need not be represented well.
+        let distance = match &self.placement {
+            ViewPlacement::Orthographic { .. } => self.render_reach,
+            ViewPlacement::Perspective { .. } => {
+                f64::from(self.anchor_render.abs().max_element()) + self.reach
+            }
+        };
         let fits = extent < largest
-            && self.render_reach < largest
+            && distance < largest
             && small > largest.recip()
             && f64::from(self.depth_range_world()) > largest.recip()
             && self.clip_from_anchor().is_finite();
@@ -202,7 +215,7 @@ impl ShadowView {
         } else {
             Err(ShadowError::ViewNotRepresentable {
                 extent_world: extent,
-                distance_world: self.render_reach,
+                distance_world: distance,
                 coordinate_world: self.placement.reach_from_origin(),
             })
         }
@@ -235,20 +248,21 @@ impl ShadowView {
         (self.clip_from_anchor * shift).as_mat4()
     }
 
-    /// Returns the world size of a texel along the map's x and y: constant for an orthographic view, at the end of the
-    /// light's reach for a perspective one, where it is largest.
+    /// Returns the world size of a texel along the map's x and y: constant for an orthographic view. For a perspective one
+    /// it is that at the farthest receiver that is seen within the light's range, where texels are largest.
     pub fn texel_size_world(&self) -> Vec2 {
         match &self.placement {
             ViewPlacement::Orthographic { bounds, .. } => bounds.rect.texel.as_vec2(),
-            ViewPlacement::Perspective { rect, reach, .. } => (rect.texel * *reach).as_vec2(),
+            ViewPlacement::Perspective { rect, .. } => (rect.texel * self.reach).as_vec2(),
         }
     }
 
-    /// Returns the world distance from the near plane to the far plane, or to the end of the light's reach.
+    /// Returns the world distance from the near plane to the far plane, or for a local light to the farthest receiver that
+    /// is seen within its range, rounded up to a quantized size step.
     pub fn depth_range_world(&self) -> f32 {
         match &self.placement {
             ViewPlacement::Orthographic { bounds, .. } => bounds.depth.length() as f32,
-            ViewPlacement::Perspective { near, reach, .. } => (reach - near) as f32,
+            ViewPlacement::Perspective { near, .. } => (self.reach - near) as f32,
         }
     }
 
@@ -301,11 +315,22 @@ impl ShadowView {
         }
     }
 
-    /// Returns the world distance beyond which a local light does not reach; infinite for a directional one.
-    pub(crate) fn reach_world(&self) -> f64 {
+    /// Returns the world distance from a local light up to which receivers are seen and beyond which casters are left out;
+    /// infinite for a directional one.
+    pub(crate) const fn reach_world(&self) -> f64 {
+        self.reach
+    }
+
+    /// Returns the world distance beyond which a local light does not shine; infinite for a directional one.
+    pub(crate) const fn range_world(&self) -> f64 {
+        self.range
+    }
+
+    /// Returns the world distance from a local light up to which receivers are seen; 0 for a directional one.
+    pub(super) fn depth_range_from_light(&self) -> f64 {
         match &self.placement {
-            ViewPlacement::Orthographic { .. } => f64::INFINITY,
-            ViewPlacement::Perspective { reach, .. } => *reach,
+            ViewPlacement::Orthographic { .. } => 0.0,
+            ViewPlacement::Perspective { .. } => self.reach,
         }
     }
 
@@ -316,51 +341,12 @@ impl ShadowView {
             ViewPlacement::Perspective { cone_cosine, .. } => *cone_cosine,
         }
     }
-
-    /// Returns the rounding error of a depth comparison as ndc depth, absolute and relative to the depth: one ulp (2u)
-    /// for storing and comparing and `4u` for the transform. Orthographic depths err relative to their range;
-    /// perspective ones relative to themselves, but for the rasteriser's interpolation, which errs by the largest depth
-    /// of a triangle.
-    pub(crate) fn depth_error_ndc(&self) -> (f64, f64) {
-        match &self.placement {
-            ViewPlacement::Orthographic { .. } => (6.0 * UNIT_ROUNDOFF, 0.0),
-            ViewPlacement::Perspective { .. } => (2.0 * UNIT_ROUNDOFF, 6.0 * UNIT_ROUNDOFF),
-        }
-    }
-
-    /// Returns the worst rounding error of a depth comparison in world units: what [`ShadowView::depth_error_ndc`]
-    /// comes to.
-    pub(crate) fn depth_error_world(&self) -> f64 {
-        let (absolute, relative) = self.depth_error_ndc();
-        match &self.placement {
-            ViewPlacement::Orthographic { bounds, .. } => absolute * bounds.depth.length(),
-            // Since depth = near / w, a depth error e is w² / near · e of distance.
-            ViewPlacement::Perspective { near, reach, .. } => {
-                reach * reach / near * absolute + reach * relative
-            }
-        }
-    }
-
-    /// Returns the rounding error of the render coordinates that casters and receivers start from, in world units: `4u`
-    /// of the largest.
-    pub(crate) fn position_error_world(&self) -> f64 {
-        position_error_world(self.render_reach)
-    }
-
-    /// Returns the rounding error of a lookup's arithmetic across the map, in texels: `6uN`.
-    pub(crate) fn lateral_error_texels(&self) -> f64 {
-        6.0 * UNIT_ROUNDOFF * f64::from(self.map_size)
-    }
 }
 
-/// Is the rounding, in texels, that kept depths may have whatever new ones would have: the offset along the normal that
-/// allows for it is then far below the residual offset of a tenth of a texel.
-const KEPT_ROUNDING_TEXELS: f64 = 1.0 / 64.0;
-
-/// Returns the rounding error in world units of coordinates up to `render_reach`: `4u` of it.
-pub(crate) fn position_error_world(render_reach: f64) -> f64 {
-    4.0 * UNIT_ROUNDOFF * render_reach
+/// Returns the render coordinate whose rounding all positions inside a local light's view may have, however close to the
+/// light. It is the light's own, and half of the distance of the farthest corner of a caster: a triangle is displaced, at
+/// its middle as well, by what its corners are rounded by, in the vertex stage and where it is clipped at the sides of the
+/// map. Half, since `4u` serves the roundings of caster and receiver, and receivers have no far corners.
+fn local_render_reach(anchor_render: Vec3, caster_reach: f64) -> f64 {
+    f64::from(anchor_render.abs().max_element()) + 0.5 * caster_reach
 }
-
-/// Is u of f32: half an ulp of one.
-const UNIT_ROUNDOFF: f64 = f32::EPSILON as f64 * 0.5;

@@ -4,7 +4,7 @@
 use glam::DVec3;
 
 use crate::cast::ViewDraws;
-use crate::fit::{LightAxes, LocalFit, LocalInput, MAX_LOCAL_VIEWS, Reached};
+use crate::fit::{LightAxes, LocalFit, LocalInput, MAX_LOCAL_VIEWS, PerspectiveView, Reached};
 use crate::light::distance_limit::range_limit;
 use crate::receive::{LayerState, MapsFrame, ShadowMaps, ShadowMapsDescriptor};
 use crate::{ShadowError, ShadowFrame, ShadowView, report::ShadowReport};
@@ -15,6 +15,8 @@ use crate::{ShadowError, ShadowFrame, ShadowView, report::ShadowReport};
 pub(crate) struct LocalLights {
     maps: ShadowMaps,
     slots: Vec<SlotState>,
+    /// States that the device clips depth to -1..1.
+    has_symmetric_clip_depth: bool,
     /// Is empty between frames; this list and the next are reused for their memory.
     candidates: Vec<Candidate>,
     layers: Vec<LayerState>,
@@ -32,6 +34,8 @@ struct SlotState {
     views: [Option<ShadowView>; MAX_LOCAL_VIEWS],
     /// Is the position that the light had then.
     position_world: DVec3,
+    /// How far it shone then.
+    range: f32,
 }
 
 /// Describes a light of a frame, in terms that spot and point lights have in common.
@@ -75,6 +79,7 @@ impl LocalLights {
     ) -> Result<Self, ShadowError> {
         Ok(Self {
             maps: ShadowMaps::new(device, descriptor)?,
+            has_symmetric_clip_depth: device.adapter_info().backend == wgpu::Backend::Gl,
             slots: vec![SlotState::default(); descriptor.lights as usize],
             candidates: Vec::new(),
             layers: Vec::new(),
@@ -130,16 +135,16 @@ impl LocalLights {
             let first_layer = light.slot * light.view_count;
             let state = &self.slots[light.slot as usize];
             // The map of a deferred light is sampled from the position that the light had when the map was drawn.
-            let (position_world, reach_world) = if candidate.refreshed || !state.has_map {
-                (light.position_world, candidate.fit.reach)
+            let (position_world, range) = if candidate.refreshed || !state.has_map {
+                (light.position_world, light.range)
             } else {
-                (state.position_world, state.fit.reach)
+                (state.position_world, state.range)
             };
             layers.extend((0..light.view_count).map(|view| LayerState {
                 layer: first_layer + view,
                 anchor_render: (position_world - frame.origin).as_vec3(),
-                reach_world,
-                limit: range_limit(light.range, maps.sampling().fade),
+                range_world: f64::from(range),
+                limit: range_limit(range, maps.sampling().fade),
                 deferred: !candidate.refreshed,
                 slice: None,
             }));
@@ -175,6 +180,7 @@ impl LocalLights {
                     has_map: true,
                     views: candidate.views,
                     position_world: light.position_world,
+                    range: light.range,
                 };
             } else {
                 state.waited = state.waited.saturating_add(1);
@@ -218,15 +224,19 @@ impl LocalLights {
                 maps.return_list(drawn);
                 continue;
             };
-            let view = ShadowView::perspective(
+            let layer = light.slot * light.view_count + index as u32;
+            let view = PerspectiveView {
                 axes,
-                light.position_world,
+                position_world: light.position_world,
                 rect,
-                &fit,
-                light.cone_cosine,
-                frame.origin,
-                light.slot * light.view_count + index as u32,
-            );
+                near: fit.near[index],
+                caster_reach: fit.caster_reach[index],
+                has_symmetric_clip_depth: self.has_symmetric_clip_depth,
+                reach: fit.reach,
+                range: f64::from(light.range),
+                cone_cosine: light.cone_cosine,
+            };
+            let view = ShadowView::perspective(&view, frame.origin, layer);
             let view = view.checked()?;
             let view_draws = ViewDraws::new(view, drawn);
             needed += maps.passes(&view_draws, &frame.casters);

@@ -44,9 +44,10 @@ impl Default for SpotShadowDescriptor<'_> {
 /// Describes a light at a position that shines into a cone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpotLight {
-    /// Is the absolute world position (f64), finite. Geometry that is nearer to it along the light's axis than 1/1024
-    /// of the light's reach casts nothing; the reach is `range`, or the distance of the farthest caster or receiver
-    /// where that is smaller.
+    /// Absolute world position (f64). The near plane of the map is at the bounds of the nearest caster, but no nearer than
+    /// 1/1024 of half their largest side. Where bounds contain the light, as those of a lamp shade or of a room do, it is at
+    /// 1/16 of half their smallest side. Both limits are at most 1/1024 of the distance to the farthest receiver that is
+    /// seen. What lies before the near plane casts nothing.
     pub position_world: DVec3,
     /// Is the direction in which the light shines, in world axes, finite and of any length but zero.
     pub direction: Vec3,
@@ -56,8 +57,8 @@ pub struct SpotLight {
     /// [`SpotLight::WIDEST_SENSIBLE_OUTER_ANGLE`] on, a point light with the same memory has finer texels in the middle
     /// of the cone.
     pub outer_angle_radians: f32,
-    /// Is the distance in world units beyond which the light neither draws casters nor shadows receivers: above 0,
-    /// infinity allowed. Beyond it visibility is 1.
+    /// Distance in world units beyond which the light neither draws casters nor shadows receivers; above 0, infinity allowed. An
+    /// end that is far away costs no precision: maps are fitted to what is seen within it.
     pub range: f32,
 }
 

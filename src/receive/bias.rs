@@ -106,7 +106,7 @@ impl Bias {
     pub(crate) fn max_peter_panning_world(self, filter: Filter, view: &ShadowView) -> f32 {
         let texel = f64::from(view.texel_size_world().max_element());
         // Rounding counts twice: the receiver is offset by it, and the caster may be stored that much lower.
-        let rounding = 2.0 * (view.depth_error_world() + view.position_error_world());
+        let rounding = 2.0 * (view.depth_error_world() + view.largest_position_error_world());
         let lateral = lateral_error_texels(view);
         let lift = match self {
             Self::Manual { constant, slope } => f64::from(constant.max(slope)),

@@ -91,9 +91,9 @@ pub enum Filter {
         /// blurs shadows at contacts as well.
         radius: f32,
     },
-    /// Averages nearest comparisons in 20 fixed directions, as the tutorial at learnopengl.com does; for point lights
-    /// only. The radius is scaled by one plus the distance from the camera divided by the light's reach, where the
-    /// frame has a camera.
+    /// Point lights only: the textbook's nearest comparisons in 20 fixed directions, over a radius that grows with the distance
+    /// from the viewer (by its share of the light's range, so not at all where the range is endless), where the frame
+    /// tells of a camera.
     ///
     /// It takes a third of the gathers of `DirectionGrid`. Its steps of 1/20 show as bands where the radius spans many
     /// texels.

@@ -68,8 +68,8 @@ pub(crate) struct LayerState {
     pub layer: u32,
     /// Is the position of a local light; zero for a directional one.
     pub anchor_render: Vec3,
-    /// Is the world distance beyond which the light does not reach; infinite for a directional one.
-    pub reach_world: f64,
+    /// Is the world distance beyond which the light does not shine; infinite for a directional one.
+    pub range_world: f64,
     /// Is where the light's shadows end, as the uniform has it.
     pub limit: [f32; 4],
     /// States that the layer needed drawing and was deferred.
@@ -84,7 +84,7 @@ impl LayerState {
         Self {
             layer,
             anchor_render: Vec3::ZERO,
-            reach_world: f64::INFINITY,
+            range_world: f64::INFINITY,
             limit,
             deferred: false,
             slice,
@@ -294,7 +294,7 @@ impl ShadowMaps {
         uniforms.extend((0..layer_count).map(|layer| empty_view_uniform(layer, Vec3::ZERO)));
         for base in layers {
             uniforms[base.layer as usize] = ShadowViewUniform {
-                range: endless_range(base.reach_world),
+                range: endless_range(base.range_world),
                 ..empty_view_uniform(base.layer, base.anchor_render)
             };
         }

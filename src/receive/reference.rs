@@ -61,16 +61,21 @@ pub fn receiver(
     position: DVec3,
     normal: DVec3,
 ) -> Receiver {
-    let relative = position - Vec3::from_array(view.anchor).as_dvec3();
+    let apart = position - Vec3::from_array(view.anchor).as_dvec3();
     let lateral_error = f64::from(view.lateral_error);
     let depth_error = f64::from(view.depth_error);
+    let scheme = bias.scheme(filter);
+    let relative = match scheme {
+        BiasScheme::Plane | BiasScheme::NormalOffset => clear_of_rounding(view, apart, normal),
+        BiasScheme::Manual => apart,
+    };
     let across = plane_across_map(view, relative, normal);
     let steepness = across.x.abs() + across.y.abs();
-    match bias.scheme(filter) {
+    match scheme {
         BiasScheme::Plane => {
             let offset =
                 f64::from(view.offset_texels) * clip_w(view, relative).max(0.0) * steepness
-                    + f64::from(view.offset_world);
+                    + rounding_offset(view);
             let offset = offset.min(0.5 * light_height(view, relative, normal));
             let lifted = relative + normal * offset;
             let plane = plane_across_map(view, lifted, normal);
@@ -88,7 +93,7 @@ pub fn receiver(
             let growth = texels * steepness * w_row(view).truncate().dot(normal).max(0.0);
             let offset =
                 texels * clip_w(view, relative).max(0.0) * steepness / (1.0 - growth.min(0.9));
-            let distance = offset + f64::from(view.offset_world);
+            let distance = offset + rounding_offset(view);
             if growth >= 0.9 || distance >= light_height(view, relative, normal) {
                 return receiver_at(view, position, relative, DVec2::ZERO, 2.0);
             }
@@ -255,6 +260,9 @@ fn disk(count: u32) -> impl Iterator<Item = DVec2> {
     })
 }
 
+/// Is `SHADOW_POSITION_ROUNDING` of `wgsl/view.wgsl`.
+const POSITION_ROUNDING: f64 = 2.0 * f32::EPSILON as f64;
+
 /// Describes a filter by its definition.
 enum Kernel {
     /// Averages nearest comparisons within this many texels along each axis.
@@ -304,6 +312,25 @@ fn w_row(view: &ShadowViewUniform) -> DVec4 {
 
 fn clip_w(view: &ShadowViewUniform, relative: DVec3) -> f64 {
     w_row(view).dot(relative.extend(1.0))
+}
+
+/// Returns what `shadow_clear_of_rounding` of `wgsl/view.wgsl` returns.
+fn clear_of_rounding(view: &ShadowViewUniform, relative: DVec3, normal: DVec3) -> DVec3 {
+    if view.light[3] <= 0.0 {
+        return relative;
+    }
+    let rounding = f64::from(view.offset_world) + POSITION_ROUNDING * relative.abs().max_element();
+    let share = rounding / light_height(view, relative, normal).max(2.0 * rounding);
+    relative * (1.0 - share)
+}
+
+/// Returns what `shadow_rounding_offset` of `wgsl/view.wgsl` returns.
+fn rounding_offset(view: &ShadowViewUniform) -> f64 {
+    if view.light[3] > 0.0 {
+        0.0
+    } else {
+        f64::from(view.offset_world)
+    }
 }
 
 /// Returns the world distance of the light from the tangent plane at a position; infinite for a directional light.

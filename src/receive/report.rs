@@ -38,11 +38,11 @@ pub struct ViewReport {
     pub triangles: u64,
     /// Counts the casters that were culled because their shadows cannot fall on what the view covers.
     pub culled: u32,
-    /// Is the world size of a texel along the map's x and y. For a local light it is that at the end of the light's
-    /// reach, where it is largest. It is zero for a view without a map.
+    /// Is the world size of a texel along the map's x and y. For a local light it is that at the
+    /// farthest receiver that is seen within its range, where it is largest. It is zero for a view without a map.
     pub texel_size_world: Vec2,
-    /// Is the world distance from the near plane to the far plane, or to the end of a local light's reach. It is zero
-    /// for a view without a map.
+    /// Is the world distance from the near plane to the far plane, or for a local light to the farthest receiver that
+    /// is seen within its range, rounded up by at most 1.19. It is zero for a view without a map.
     pub depth_range_world: f32,
     /// Is the height in world units above which a caster that lies on a surface always casts its full shadow onto it:
     /// the largest gap (peter-panning) that the light's bias can leave, at the worst angle of the light.

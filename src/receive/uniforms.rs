@@ -51,7 +51,9 @@ pub struct ShadowViewUniform {
     pub(crate) lateral_error: f32,
     /// Is the offset along the normal, in texels times |nx| + |ny| of the normal in light space.
     pub(crate) offset_texels: f32,
-    /// Is the offset along the normal, in world units, that allows for the rounding of render coordinates.
+    /// Is the world distance by which a receiver's plane is moved for the rounding of render coordinates: along the
+    /// normal, or toward a local light. For a local light, 2^-22 of the receiver's distance from it is added, along the
+    /// axis on which that is largest.
     pub(crate) offset_world: f32,
     /// Is the constant of a manual bias in world units; 0 for the other biases.
     pub(crate) manual_constant: f32,
@@ -92,8 +94,8 @@ pub(crate) fn view_uniform_bytes(views: u64) -> u64 {
 
 /// Returns a range for the uniforms. An infinite one becomes a distance that no position exceeds and whose square is
 /// finite.
-pub(crate) fn endless_range(reach_world: f64) -> f32 {
-    reach_world.min(1e18) as f32
+pub(crate) fn endless_range(range_world: f64) -> f32 {
+    range_world.min(1e18) as f32
 }
 
 /// Holds the settings with which the maps of a light are sampled.
@@ -197,7 +199,7 @@ pub(crate) fn view_uniform(view: &ShadowView, sampling: &Sampling) -> ShadowView
         manual_constant,
         manual_slope,
         sharpness: sampling.filter.sharpness(),
-        range: endless_range(view.reach_world()),
+        range: endless_range(view.range_world()),
         cone_cosine: view.cone_cosine() as f32,
         sample_radius: sampling.filter.radius_world(),
         camera: [0.0; 4],

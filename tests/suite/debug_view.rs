@@ -245,6 +245,41 @@ fn a_cross_shows_the_walls_of_a_room() {
     }
 }
 
+/// A light without an end of its range shows distances as shares of the distance up to which receivers are seen: the farthest
+/// corner of the floor's box here, rounded up by at most a quantized size step of 1.19.
+#[test]
+fn an_endless_light_shows_distances() {
+    let gpu = gpu();
+    let descriptor = SpotShadowDescriptor {
+        map_size: MAP,
+        ..Default::default()
+    };
+    let mut shadow = SpotShadow::new(&gpu.device, &descriptor).expect("a valid spot");
+    let scene = Scene::new(gpu, &[Mesh::floor(0.0, 9.0)]);
+    let frame = SpotFrame {
+        origin: DVec3::ZERO,
+        light: SpotLight {
+            position_world: DVec3::Y * 3.0,
+            direction: Vec3::NEG_Y,
+            outer_angle_radians: 0.7,
+            range: f32::INFINITY,
+        },
+        camera: None,
+        casters: &scene.list(),
+        receivers: &[Aabb::new(
+            Vec3::new(-9.0, -3.0, -9.0),
+            Vec3::new(9.0, 0.0, 9.0),
+        )],
+    };
+    record_spot(gpu, &mut shadow, &frame).expect("a valid frame");
+    let image = picture(gpu, shadow.maps(), DebugImage::Layer(0), [MAP; 2]).expect("a layer");
+    // The cone's square meets the box's lower side in corners at 6 (tan 0.7, 1, tan 0.7).
+    let farthest = 6.0 * (2.0 * 0.7_f64.tan().powi(2) + 1.0).sqrt();
+    let grey = f64::from(image.get_pixel(MAP / 2, MAP / 2).0[0]) / 255.0;
+    let wanted = 3.0 / (farthest * 1.2)..3.0 / farthest + 1.0 / 255.0;
+    assert!(wanted.contains(&grey), "{grey}, {wanted:?}");
+}
+
 /// A pool shows each of its lights as that light alone is shown.
 #[test]
 fn a_pool_shows_one_of_its_lights() {

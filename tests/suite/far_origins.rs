@@ -320,7 +320,9 @@ fn lamps_of_any_origin_are_right_or_refused() {
         for (origin, position_world) in [(place, place + DVec3::Y * 3.0), (DVec3::ZERO, place)] {
             let light = position_world - origin;
             omni.invalidate();
+            omni.reset_history();
             spot.invalidate();
+            spot.reset_history();
             let omni_frame = OmniFrame {
                 origin,
                 light: OmniLight {

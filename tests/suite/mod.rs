@@ -35,6 +35,7 @@ mod golden;
 mod hard_cases;
 mod keeping;
 mod kept_origin;
+mod local_reach;
 mod mesh_errors;
 mod mirrored_views;
 mod never_stale;

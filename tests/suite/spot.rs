@@ -195,7 +195,11 @@ fn planes_would_shadow_themselves() {
     };
     let mut spot = Spot::new(gpu, 300, Filter::Bilinear { sharpness: 1.0 }, none);
     let mut random = Random::new(61);
-    for cone in CONES_DEGREES {
+    // OpenGL clips depths to -1..1. What is allowed for the clipping of a plane 100 wide is more than a texel of the narrowest
+    // cones comes to.
+    let is_gl = gpu.adapter.backend == wgpu::Backend::Gl;
+    let cones = CONES_DEGREES.into_iter();
+    for cone in cones.filter(|cone| *cone >= 10.0 || !is_gl) {
         let light = light(DVec3::new(0.3, 5.0, -0.7), DVec3::NEG_Y, cone, 40.0);
         let (sheet, points) = plane_under(&light, 1.0, &mut random);
         spot.record(gpu, &Scene::new(gpu, &[sheet]), light);

@@ -10,6 +10,7 @@ pub mod floor;
 pub mod frames;
 pub mod golden;
 pub mod gpu;
+pub mod lamp_scenes;
 pub mod lights;
 pub mod local_truth;
 pub mod multiview;

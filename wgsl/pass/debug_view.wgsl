@@ -1,4 +1,5 @@
-// Draws depth maps as grey levels: black at the light, white at the end of its reach and where nothing casts.
+// Depth maps as grey levels: black at the light, white at the end of its range and where nothing casts. The range is here that
+// up to which receivers are seen.
 //
 // CPU counterpart: src/debug/view.rs. Requires: view, cube_face, fullscreen.
 
