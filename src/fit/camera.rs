@@ -127,6 +127,12 @@ impl CameraFrustum {
         (corners.depth_near, corners.depth_far.min(self.max_distance))
     }
 
+    /// Returns whether the image is equally high at all depths.
+    pub fn is_orthographic(&self) -> bool {
+        let (near, far) = (self.image_height(0.0), self.image_height(1.0));
+        (near - far).abs() <= 1e-9 * near
+    }
+
     /// Returns the distance limit in world units; infinite if there is no limit.
     pub fn max_distance(&self) -> f64 {
         self.max_distance

@@ -4,7 +4,7 @@ use crate::fit::axes::LightBox;
 use crate::fit::caster_parts::CasterPart;
 use crate::fit::directional_input::{CasterBounds, FitInput, FitLimits, Region};
 use crate::fit::extruded_rect::push_extruded_rect;
-use crate::fit::map_rect::{DepthRange, LightSpaceBounds, MapRect, MapRectRequest};
+use crate::fit::map_rect::{HeldBounds, HeldDepth, HeldRect, LightSpaceBounds, MapRectRequest};
 use crate::fit::region::HalfSpaces;
 use crate::fit::spacing::Spacing;
 use crate::fit::stability::Stability;
@@ -39,8 +39,8 @@ pub(crate) fn fit_bounds(
     casters: &CascadeCasters<'_>,
     (required, spacing): (LightBox, Spacing),
     seen: (&[Seen], Option<(f64, f64)>),
-    held: Option<&LightSpaceBounds>,
-) -> Option<LightSpaceBounds> {
+    held: Option<&HeldBounds>,
+) -> Option<HeldBounds> {
     let follows_casters = match input.region {
         Region::Bounds(_) => false,
         Region::Everything => true,
@@ -85,11 +85,12 @@ pub(crate) fn fit_bounds(
         texel_floor,
         full_half_side: f64::INFINITY,
     };
-    let rect = MapRect::fit(&request, held.map(|held| &held.rect));
+    let held_rect = HeldRect::fit(&request, held.map(|held| &held.rect));
+    let rect = held_rect.rect;
     let least_range = rect.texel.max_element().max(spacing.least_depth());
     let nearest_allowed = highest_receiver + MAX_TEXELS_TO_NEAR * rect.texel.max_element();
     let depth = |near: f64| {
-        DepthRange::fit(
+        HeldDepth::fit(
             covered.min.z,
             near,
             least_range,
@@ -98,7 +99,7 @@ pub(crate) fn fit_bounds(
     };
     let light_bounds = LightSpaceBounds {
         rect,
-        depth: depth(covered.max.z),
+        depth: depth(covered.max.z).depth,
     };
     // Only the part of a caster inside the extruded map rectangle counts for the near plane: the far end of a wide
     // ground does not. The quantized light-space bounds are larger than was requested, so this also includes casters
@@ -134,9 +135,9 @@ pub(crate) fn fit_bounds(
             });
         }
     }
-    Some(LightSpaceBounds {
+    Some(HeldBounds {
+        rect: held_rect,
         depth: depth(nearest),
-        ..light_bounds
     })
 }
 

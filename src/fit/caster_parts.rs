@@ -130,9 +130,11 @@ fn divide(casters: &Casters<'_>, caster: u32, seen: &[SeenReceiver], parts: &mut
     let bounds = &casters.bounds[caster as usize];
     let shadows_itself = casters.shapes[caster as usize].shadows_itself();
     let first = parts.len();
-    // The depths of a caster are rounded at its corners. A part that is less high than this rounding shadows nothing.
-    let farthest = bounds.min.abs().max(bounds.max.abs()).max_element();
-    let least_height = 2.0 * position_error_world(f64::from(farthest));
+    // The depths of a caster are rounded at its corners, and in maps that contain it the bias allows for twice that
+    // rounding. A caster that rises no more than four times as high above its receivers would cost more contact of all
+    // other shadows than its own shadow is worth.
+    let farthest = bounds.min.abs().max(bounds.max.abs()).as_dvec3().length();
+    let least_height = 8.0 * position_error_world(farthest);
     let toward_light = casters.axes.toward_light();
     let mut add = |pair: Pair| {
         if pair.height <= least_height {

@@ -2,25 +2,33 @@
 
 use glam::DVec3;
 
-use crate::fit::axes::LightBox;
+use crate::fit::axes::{LightAxes, LightBox};
 use crate::fit::cascade_bounds::{CascadeCasters, fit_bounds};
 use crate::fit::caster_parts::{Casters, PartScratch};
 use crate::fit::directional_input::{CasterBounds, FitInput, FitLimits, Region};
 use crate::fit::extruded_rect::ExtrudedRect;
 use crate::fit::footprint::{FootprintScratch, SliceReport};
-use crate::fit::map_rect::LightSpaceBounds;
-use crate::fit::required::{camera_slice, checked_spacing, required_box};
+use crate::fit::map_rect::{HeldBounds, HeldDepth, LightSpaceBounds};
+use crate::fit::required::{camera_slice, checked_spacing, held_depths, required_box};
 use crate::fit::spacing::Spacing;
 use crate::fit::split::MAX_CASCADES;
 use crate::fit::visible::{SeenBounds, SeenLists};
 use crate::{Aabb, ShadowError};
+
+/// Is the cosine of the angle, about a degree, by which a light turns from one frame to the next without losing the
+/// memory of its extents.
+const TURN_COSINE: f64 = 0.999_85;
 
 /// Holds the light-space bounds of a light's cascades, kept from frame to frame for their hysteresis.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct DirectionalFit {
     /// Has one entry per cascade, `None` for a cascade in which nothing can cast a shadow.
     pub light_bounds: [Option<LightSpaceBounds>; MAX_CASCADES],
-    held: [Option<LightSpaceBounds>; MAX_CASCADES],
+    held: [Option<HeldBounds>; MAX_CASCADES],
+    /// Holds the axes of the light in the last frame.
+    axes: Option<LightAxes>,
+    /// Holds the depths along the view between which receivers are seen.
+    held_depths: Option<HeldDepth>,
     /// Describes the slices of the cascades of a camera's view.
     pub slices: [Option<SliceReport>; MAX_CASCADES],
 }
@@ -36,6 +44,15 @@ pub(crate) struct FitScratch {
 }
 
 impl DirectionalFit {
+    /// Returns whether the extents of this frame count for a light with `axes`. Where a light turns at once, no shadow
+    /// stands still.
+    fn holds_for(&self, axes: &LightAxes) -> bool {
+        self.axes.is_some_and(|held| {
+            held.toward_light().dot(axes.toward_light()) > TURN_COSINE
+                && held.up().dot(axes.up()) > TURN_COSINE
+        })
+    }
+
     /// Returns the fit for this frame and fills `scratch.casters`.
     ///
     /// Returns an error where casters and receivers are so far from the world's origin that f64 does not distinguish
@@ -58,13 +75,22 @@ impl DirectionalFit {
         divide_casters(input, &visible, scratch);
         let any_casts = scratch.casters.iter().any(|caster| caster.can_shadow)
             || !scratch.parts.parts.is_empty();
-        let mut next = self.clone();
+        let history = if self.holds_for(&input.axes) {
+            self.clone()
+        } else {
+            Self::default()
+        };
+        let mut next = history.clone();
+        next.axes = Some(input.axes);
+        let depths = held_depths(&visible, history.held_depths.as_ref());
+        next.held_depths = depths.or(history.held_depths);
         for cascade in 0..limits.cascades {
-            let slice = camera_slice(input, limits, &visible, cascade);
+            let depths = next.held_depths.as_ref();
+            let slice = camera_slice(input, limits, &visible, depths, cascade);
             let seen = &scratch.lists.seen;
             let required = required_box(input, limits, slice.as_ref(), seen, cascade);
-            let held = self.held[cascade].as_ref();
-            let light_bounds = match required {
+            let held = history.held[cascade].as_ref();
+            let held_bounds = match required {
                 Some(required) if any_casts => {
                     let spacing = checked_spacing(input, limits, slice.as_ref(), &required)?;
                     let casters = CascadeCasters {
@@ -83,7 +109,8 @@ impl DirectionalFit {
                 }
                 _ => None,
             };
-            next.held[cascade] = light_bounds.or(next.held[cascade]);
+            next.held[cascade] = held_bounds.or(next.held[cascade]);
+            let light_bounds = held_bounds.map(|held| held.bounds());
             next.light_bounds[cascade] = light_bounds;
             next.slices[cascade] = slice.zip(light_bounds).map(|(slice, light_bounds)| {
                 let scratch = &mut scratch.footprint;

@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 use crate::Aabb;
 use crate::fit::axes::LightAxes;
 use crate::fit::local_input::LocalInput;
-use crate::fit::map_rect::{MapRect, MapRectRequest};
+use crate::fit::map_rect::{HeldRect, MapRect, MapRectRequest};
 use crate::fit::reached::{self, Reached};
 use crate::fit::region::{HalfSpace, HalfSpaces, Relation};
 
@@ -26,7 +26,7 @@ const NEAREST_SHARE: f64 = 1.0 / 1024.0;
 pub(crate) struct LocalFit {
     /// Holds rectangles in tangents, `None` for a view in which nothing can cast a shadow.
     pub rects: [Option<MapRect>; MAX_LOCAL_VIEWS],
-    held: [Option<MapRect>; MAX_LOCAL_VIEWS],
+    held: [Option<HeldRect>; MAX_LOCAL_VIEWS],
     /// Is the world distance of the near plane along every view's axis.
     pub near: f64,
     /// Is the world distance beyond which nothing receives.
@@ -40,6 +40,11 @@ struct Extent {
 }
 
 impl LocalFit {
+    /// Forgets the extents of earlier frames.
+    pub fn reset_history(&mut self) {
+        self.held = [None; MAX_LOCAL_VIEWS];
+    }
+
     /// Returns the fit for this frame. Each list of `drawn` is filled with the indices of the casters of one view.
     pub fn fit(
         &self,
@@ -67,7 +72,7 @@ impl LocalFit {
             let Some((min, max)) = view.needed(input, reached, nearest) else {
                 continue;
             };
-            let rect = MapRect::fit(
+            let held_rect = HeldRect::fit(
                 &MapRectRequest {
                     min,
                     max,
@@ -78,6 +83,7 @@ impl LocalFit {
                 },
                 self.held[index].as_ref(),
             );
+            let rect = held_rect.rect;
             let region = view.region(rect.min, rect.max(), nearest);
             for caster in &reached.casters {
                 if let Some(distance) = view.nearest_within(&region, &caster.bounds) {
@@ -87,7 +93,7 @@ impl LocalFit {
             }
             if !drawn[index].is_empty() {
                 next.rects[index] = Some(rect);
-                next.held[index] = Some(rect);
+                next.held[index] = Some(held_rect);
             }
         }
         // The distance is rounded down to a power of two, so that it changes rarely, but not below `nearest`. It is no

@@ -4,7 +4,7 @@
 use glam::DVec2;
 
 use crate::fit::LightBox;
-use crate::fit::size_step::{size_step_up, size_step_with_hysteresis};
+use crate::fit::size_step::{HeldSize, size_step_up};
 
 /// Is the number of steps into which a depth range is divided; its ends are on whole steps, so that they rarely move.
 const DEPTH_STEPS: f64 = 64.0;
@@ -42,52 +42,72 @@ pub(crate) struct MapRect {
 }
 
 impl MapRect {
-    /// Returns the rectangle for `request`. The `held` one is kept, on each axis by itself, as long as it satisfies the
-    /// request, so that small motions of a camera change nothing.
-    pub fn fit(request: &MapRectRequest, held: Option<&Self>) -> Self {
-        let held = held.filter(|held| held.map_size == request.map_size);
-        let (min_x, texel_x) = fit_axis(request, held, 0);
-        let (min_y, texel_y) = fit_axis(request, held, 1);
-        Self {
-            min: DVec2::new(min_x, min_y),
-            texel: DVec2::new(texel_x, texel_y),
-            map_size: request.map_size,
-        }
-    }
-
     /// Returns the greatest x and y.
     pub fn max(&self) -> DVec2 {
         self.min + self.texel * f64::from(self.map_size)
     }
 }
 
-/// Returns start and texel size along one axis.
-fn fit_axis(request: &MapRectRequest, held: Option<&MapRect>, axis: usize) -> (f64, f64) {
+/// Holds a map rectangle from frame to frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct HeldRect {
+    pub rect: MapRect,
+    /// Holds the sizes of a texel along x and y.
+    texels: [HeldSize; 2],
+}
+
+impl HeldRect {
+    /// Returns the rectangle for `request`. The `held` one is kept, on each axis by itself, as long as it satisfies the
+    /// request, so that small motions of a camera change nothing.
+    pub fn fit(request: &MapRectRequest, held: Option<&Self>) -> Self {
+        let held = held.filter(|held| held.rect.map_size == request.map_size);
+        let (min_x, texel_x, held_x) = fit_axis(request, held, 0);
+        let (min_y, texel_y, held_y) = fit_axis(request, held, 1);
+        Self {
+            rect: MapRect {
+                min: DVec2::new(min_x, min_y),
+                texel: DVec2::new(texel_x, texel_y),
+                map_size: request.map_size,
+            },
+            texels: [held_x, held_y],
+        }
+    }
+}
+
+/// Returns start and texel size along one axis, and what is held of the size.
+fn fit_axis(
+    request: &MapRectRequest,
+    held: Option<&HeldRect>,
+    axis: usize,
+) -> (f64, f64, HeldSize) {
     let (low, high) = (request.min[axis], request.max[axis]);
     let size = f64::from(request.map_size);
     let margin = f64::from(request.margin_texels);
     // One texel is lost to snapping. A map that is all margin is too small to snap: it is centred on what it covers.
     let usable = size - 2.0 * margin - 1.0;
     if usable < 1.0 {
-        let texel = size_step_up(((high - low) / size).max(request.texel_floor));
-        return ((low + high) * 0.5 - 0.5 * size * texel, texel);
+        let needed = ((high - low) / size).max(request.texel_floor);
+        let texel = size_step_up(needed);
+        let start = (low + high) * 0.5 - 0.5 * size * texel;
+        return (start, texel, HeldSize::new(needed));
     }
     let texel_needed = ((high - low) / usable).max(request.texel_floor);
-    let texel = size_step_with_hysteresis(texel_needed, held.map(|held| held.texel[axis]));
+    let held_size = HeldSize::following(held.map(|held| held.texels[axis]), texel_needed);
+    let texel = held_size.step();
     let full_texel = 2.0 * request.full_half_side / size;
     if texel >= full_texel {
-        return (-request.full_half_side, full_texel);
+        return (-request.full_half_side, full_texel, held_size);
     }
-    if let Some(held) = held.filter(|held| held.texel[axis] == texel) {
-        let start = held.min[axis];
+    if let Some(held) = held.filter(|held| held.rect.texel[axis] == texel) {
+        let start = held.rect.min[axis];
         if start + margin * texel <= low && high <= start + (size - margin) * texel {
-            return (start, texel);
+            return (start, texel, held_size);
         }
     }
     let first = (low / texel).floor();
     let covered = (high / texel).ceil() - first;
     let spare = ((size - 2.0 * margin - covered) * 0.5).floor().max(0.0);
-    ((first - margin - spare) * texel, texel)
+    ((first - margin - spare) * texel, texel, held_size)
 }
 
 /// Holds the far and near plane of an orthographic view, on whole steps of its range.
@@ -99,28 +119,37 @@ pub(crate) struct DepthRange {
     pub near: f64,
 }
 
-impl DepthRange {
+/// Holds a depth range from frame to frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct HeldDepth {
+    pub depth: DepthRange,
+    length: HeldSize,
+}
+
+impl HeldDepth {
     /// Returns a range that holds `far..near` and is at least `least` deep.
     pub fn fit(far: f64, near: f64, least: f64, held: Option<&Self>) -> Self {
         // The range has one step behind the deepest receiver, so that rounding never puts it behind the far plane, and
         // two for snapping.
         let needed = (near - far).max(least) * DEPTH_STEPS / (DEPTH_STEPS - 4.0);
-        let range = size_step_with_hysteresis(needed, held.map(Self::length));
+        let length = HeldSize::following(held.map(|held| held.length), needed);
+        let range = length.step();
         let step = range / DEPTH_STEPS;
-        match held {
-            Some(held) if held.length() == range && held.far + step <= far && near <= held.near => {
-                *held
+        let held = held.map(|held| held.depth);
+        let fits = |held: &DepthRange| held.far + step <= far && near <= held.near;
+        let same_length = held.filter(|held| held.length() == range);
+        let depth = same_length.filter(fits).unwrap_or_else(|| {
+            let far = ((far / step).floor() - 1.0) * step;
+            DepthRange {
+                far,
+                near: far + range,
             }
-            _ => {
-                let far = ((far / step).floor() - 1.0) * step;
-                Self {
-                    far,
-                    near: far + range,
-                }
-            }
-        }
+        });
+        Self { depth, length }
     }
+}
 
+impl DepthRange {
     /// Returns the world units from the far to the near plane.
     pub fn length(&self) -> f64 {
         self.near - self.far
@@ -132,6 +161,23 @@ impl DepthRange {
 pub(crate) struct LightSpaceBounds {
     pub rect: MapRect,
     pub depth: DepthRange,
+}
+
+/// Holds light-space bounds from frame to frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct HeldBounds {
+    pub rect: HeldRect,
+    pub depth: HeldDepth,
+}
+
+impl HeldBounds {
+    /// Returns the bounds that are held.
+    pub fn bounds(&self) -> LightSpaceBounds {
+        LightSpaceBounds {
+            rect: self.rect.rect,
+            depth: self.depth.depth,
+        }
+    }
 }
 
 impl LightSpaceBounds {
@@ -179,7 +225,7 @@ mod tests {
             let center = DVec2::new((t * 0.713).sin() * 1e5, (t * 0.317).cos() * 1e3);
             let half = DVec2::new(0.1 + t * 0.05, 3.0 + (t * 0.1).sin());
             let request = request(center - half, center + half);
-            let rect = MapRect::fit(&request, None);
+            let rect = HeldRect::fit(&request, None).rect;
             assert_holds(&rect, &request);
             let phase = rect.min / rect.texel;
             assert!((phase - phase.round()).abs().max_element() < 1e-4);
@@ -193,13 +239,14 @@ mod tests {
     #[test]
     fn a_held_rect_stays_until_it_must_move() {
         let first = request(DVec2::new(-4.0, -3.0), DVec2::new(4.3, 3.1));
-        let held = MapRect::fit(&first, None);
+        let held_rect = HeldRect::fit(&first, None);
+        let held = held_rect.rect;
         let nudge = DVec2::new(held.texel.x * 0.4, -held.texel.y * 0.3);
         let second = request(first.min + nudge, first.max + nudge);
-        assert_eq!(MapRect::fit(&second, Some(&held)), held);
+        assert_eq!(HeldRect::fit(&second, Some(&held_rect)).rect, held);
         let far = DVec2::new(7.0, 0.0);
         let third = request(first.min + far, first.max + far);
-        let moved = MapRect::fit(&third, Some(&held));
+        let moved = HeldRect::fit(&third, Some(&held_rect)).rect;
         assert_holds(&moved, &third);
         assert_eq!(moved.texel, held.texel);
         let texels = (moved.min - held.min) / held.texel;
@@ -211,7 +258,7 @@ mod tests {
     fn a_rect_that_would_be_as_large_as_the_full_square_is_the_full_square() {
         let mut request = request(DVec2::new(-0.9, -0.1), DVec2::new(0.95, 0.1));
         request.full_half_side = 0.97;
-        let rect = MapRect::fit(&request, None);
+        let rect = HeldRect::fit(&request, None).rect;
         assert!(rect.min.x == -0.97 && (rect.max().x - 0.97).abs() <= 4.0 * f64::EPSILON);
         assert!(rect.texel.y < rect.texel.x * 0.25);
         assert_holds(&rect, &request);
@@ -219,15 +266,15 @@ mod tests {
 
     #[test]
     fn depth_ranges_hold_their_ends_and_rarely_move() {
-        let mut held: Option<DepthRange> = None;
+        let mut held: Option<HeldDepth> = None;
         let mut changes = 0;
         for step in 0..1000 {
             let sway = 0.05 * (f64::from(step) * 0.3).sin();
             let (far, near) = (-10.0 + sway, 5.0 - sway);
-            let range = DepthRange::fit(far, near, 1e-6, held.as_ref());
-            assert!(range.far < far && near <= range.near);
-            changes += usize::from(held != Some(range));
-            held = Some(range);
+            let next = HeldDepth::fit(far, near, 1e-6, held.as_ref());
+            assert!(next.depth.far < far && near <= next.depth.near);
+            changes += usize::from(held.map(|held| held.depth) != Some(next.depth));
+            held = Some(next);
         }
         assert!(changes <= 2, "{changes}");
     }
@@ -237,11 +284,11 @@ mod tests {
         for map_size in [1, 2, 3, 7] {
             let mut request = request(DVec2::splat(2.5), DVec2::splat(2.5));
             request.map_size = map_size;
-            let rect = MapRect::fit(&request, None);
+            let rect = HeldRect::fit(&request, None).rect;
             assert!(rect.texel.min_element() > 0.0 && rect.min.is_finite());
             assert!(rect.min.max_element() < 2.5 && rect.max().min_element() > 2.5);
         }
-        let range = DepthRange::fit(3.0, 3.0, 1e-6, None);
+        let range = HeldDepth::fit(3.0, 3.0, 1e-6, None).depth;
         assert!(range.far < 3.0 && range.near >= 3.0 && range.length() > 0.0);
     }
 }

@@ -6,6 +6,7 @@ use crate::fit::axes::LightBox;
 use crate::fit::camera::CameraFrustum;
 use crate::fit::directional_input::{FitInput, FitLimits, Region};
 use crate::fit::footprint::Slice;
+use crate::fit::map_rect::HeldDepth;
 use crate::fit::spacing::Spacing;
 use crate::fit::stability::Stability;
 use crate::fit::visible::{self, Seen, SeenBounds};
@@ -49,6 +50,7 @@ pub(crate) fn camera_slice<'a>(
     input: &FitInput<'a>,
     limits: &FitLimits,
     visible: &'a SeenBounds,
+    held_depths: Option<&HeldDepth>,
     cascade: usize,
 ) -> Option<Slice<'a>> {
     let Region::Cameras(cameras) = input.region else {
@@ -58,7 +60,9 @@ pub(crate) fn camera_slice<'a>(
     let (near, far) = match limits.stability {
         Stability::TightFit => (visible.depth_near, visible.depth_far),
         Stability::BoundingSphere => {
-            let ranges = cameras.iter().map(CameraFrustum::depth_range);
+            let ranges = cameras
+                .iter()
+                .map(|camera| sphere_range(camera, held_depths));
             ranges.fold((f64::INFINITY, f64::NEG_INFINITY), |all, range| {
                 (all.0.min(range.0), all.1.max(range.1))
             })
@@ -73,6 +77,28 @@ pub(crate) fn camera_slice<'a>(
         visible,
         between,
     })
+}
+
+/// Returns the depths along the view of what the spheres of a camera's slices must hold. The slices of a perspective
+/// camera end where its volume ends, so that nothing but the projection changes them. An orthographic camera may stand
+/// anywhere along its view, and its near and far plane say nothing of where the scene is: its slices end where what is
+/// seen of the receivers ends, in steps that change rarely.
+fn sphere_range(camera: &CameraFrustum, held_depths: Option<&HeldDepth>) -> (f64, f64) {
+    let (near, far) = camera.depth_range();
+    match held_depths {
+        Some(held) if camera.is_orthographic() => {
+            (near.max(held.depth.far), far.min(held.depth.near))
+        }
+        _ => (near, far),
+    }
+}
+
+/// Returns the depths along the view between which receivers are seen, in steps that change rarely.
+pub(crate) fn held_depths(visible: &SeenBounds, held: Option<&HeldDepth>) -> Option<HeldDepth> {
+    let (near, far) = (visible.depth_near, visible.depth_far);
+    let least = f64::EPSILON.sqrt() * near.abs().max(far.abs()).max(f64::MIN_POSITIVE);
+    (near <= far && near.is_finite() && far.is_finite())
+        .then(|| HeldDepth::fit(near, far, least, held))
 }
 
 /// Returns the light-space box of the receivers that cascade `cascade` is for, or `None` where there are none.

@@ -26,12 +26,107 @@ pub(crate) fn size_step_up(size: f64) -> f64 {
         .unwrap_or(4.0 * octave)
 }
 
-/// Returns the size step to use for `size` when `held` is in use: `held` while it is large enough and no smaller step
-/// fits with slack.
-pub(crate) fn size_step_with_hysteresis(size: f64, held: Option<f64>) -> f64 {
-    match held {
-        Some(held) if held >= size && size_step_up(size * SHRINK_SLACK) >= held => held,
-        _ => size_step_up(size),
+/// Is the number of frames after which a size that was larger than needed in all of them is reduced, where one size step
+/// is to be gained. Two seconds at sixty frames.
+const SHRINK_FRAMES: u32 = 120;
+
+/// Is how far ahead of the need a size grows that grew already within the last [`SHRINK_FRAMES`]: an octave, so that what
+/// moves away steadily changes the size once per octave.
+const GROWTH_AHEAD: f64 = 2.0;
+
+/// Is the share of an earlier need below which the present one counts as another scene, after a cut of the camera for
+/// example. A size is then reduced in half the time.
+const SUDDEN_DROP: f64 = 0.25;
+
+/// Is the share of a size below which it is of no use for what is needed, and is reduced at once: after a frame with
+/// wild bounds, for example.
+const USELESS: f64 = 0.125;
+
+/// Holds a quantized size from frame to frame. It grows at once where more is needed and shrinks late, so that a moving
+/// caster or a turning camera does not change the texels of shadows that stand still.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct HeldSize {
+    step: f64,
+    /// Is the largest size needed in the last `frames` frames.
+    peak: f64,
+    /// Counts up to [`SHRINK_FRAMES`] and begins anew.
+    frames: u32,
+    /// Counts the frames since the step grew.
+    since_growth: u32,
+}
+
+impl HeldSize {
+    /// Returns a size of the smallest step that is at least `size` (positive and finite).
+    pub fn new(size: f64) -> Self {
+        Self {
+            step: size_step_up(size),
+            peak: size,
+            frames: 0,
+            since_growth: u32::MAX,
+        }
+    }
+
+    /// Returns the size step.
+    pub fn step(&self) -> f64 {
+        self.step
+    }
+
+    /// Returns what is held in a frame that needs `size`, after the one that held this.
+    pub fn next(self, size: f64) -> Self {
+        if size > self.step {
+            let grew_lately = self.since_growth < SHRINK_FRAMES;
+            return Self {
+                step: size_step_up(if grew_lately {
+                    size * GROWTH_AHEAD
+                } else {
+                    size
+                }),
+                since_growth: 0,
+                ..Self::new(size)
+            };
+        }
+        if size < self.step * USELESS {
+            return Self::new(size);
+        }
+        // What was needed long ago, or far more than now, is no guide.
+        let begins_anew = self.frames >= SHRINK_FRAMES || size < self.peak * SUDDEN_DROP;
+        let next = Self {
+            peak: if begins_anew {
+                size
+            } else {
+                self.peak.max(size)
+            },
+            frames: if begins_anew { 0 } else { self.frames + 1 },
+            since_growth: self.since_growth.saturating_add(1),
+            ..self
+        };
+        let smaller = size_step_up(next.peak * SHRINK_SLACK);
+        let gain = next.step / smaller;
+        // A size that grew ahead of the need stays ahead for a while.
+        let least_gain = if next.since_growth < 4 * SHRINK_FRAMES {
+            GROWTH_AHEAD
+        } else {
+            1.0
+        };
+        let wait = if gain >= 1.0 / SUDDEN_DROP {
+            SHRINK_FRAMES / 2
+        } else {
+            SHRINK_FRAMES
+        };
+        if gain > least_gain && next.frames >= wait {
+            return Self {
+                step: smaller,
+                frames: 0,
+                peak: size,
+                ..next
+            };
+        }
+        next
+    }
+
+    /// Returns what is held in a frame that needs `size`, after one that held `held`, if there was one.
+    pub fn following(held: Option<Self>, size: f64) -> Self {
+        held.map_or_else(|| Self::new(size), |held| held.next(size))
     }
 }
 
@@ -50,20 +145,55 @@ mod tests {
         }
     }
 
-    #[test]
-    fn sizes_that_vary_around_a_step_change_it_once() {
-        let mut held = None;
+    /// Returns how often the step changes over the sizes, and the final step.
+    fn changes(sizes: impl IntoIterator<Item = f64>) -> (usize, f64) {
+        let mut sizes = sizes.into_iter();
+        let mut held = HeldSize::new(sizes.next().expect("a size"));
         let mut changes = 0;
-        for frame in 0..1000 {
-            let size = 1.0 + 0.02 * (frame as f64 * 0.7).sin();
-            let step = size_step_with_hysteresis(size, held);
-            changes += usize::from(held != Some(step));
-            held = Some(step);
+        for size in sizes {
+            let next = held.next(size);
+            assert!(next.step() >= size);
+            changes += usize::from(next.step() != held.step());
+            held = next;
         }
-        assert!(changes <= 2, "{changes}");
+        (changes, held.step())
+    }
+
+    #[test]
+    fn sizes_that_vary_change_their_step_once() {
+        let trembling = (0..1000).map(|frame| 1.0 + 0.02 * f64::from(frame * 7).sin());
+        assert!(changes(trembling).0 <= 1);
+        let swinging = (0..1000).map(|frame| 2.0 + f64::from(frame).mul_add(0.07, 0.3).sin());
         assert!(
-            size_step_with_hysteresis(0.5, held) < 0.6,
-            "a real shrink is taken"
+            changes(swinging).0 <= 3,
+            "{:?}",
+            changes((0..1000).map(|frame| 2.0 + f64::from(frame).mul_add(0.07, 0.3).sin()))
         );
+    }
+
+    /// Checks that growth by a factor of 16 over 1000 frames changes the step at most once per octave, and that the step
+    /// may shrink and grow again in between where growth is slow.
+    #[test]
+    fn steady_growth_changes_the_step_rarely() {
+        let growing = (0..1000).map(|frame| 16.0_f64.powf(f64::from(frame) / 1000.0));
+        let (count, last) = changes(growing);
+        assert!(count <= 8 && last < 16.0 * 2.4, "{count} {last}");
+    }
+
+    #[test]
+    fn a_smaller_need_is_met_late_and_a_much_smaller_one_soon() {
+        let drop = |to: f64| {
+            let mut held = HeldSize::new(1.0);
+            (1..1000)
+                .find(|_| {
+                    held = held.next(to);
+                    held.step() < 1.0
+                })
+                .expect("it shrinks")
+        };
+        // The first frames still count the larger need.
+        assert!((120..=242).contains(&drop(0.75)), "{}", drop(0.75));
+        assert_eq!(drop(0.2), 61);
+        assert_eq!(drop(0.1), 1);
     }
 }

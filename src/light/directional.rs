@@ -291,6 +291,12 @@ impl DirectionalShadow {
         &self.maps
     }
 
+    /// Discards the extents of earlier frames. Without this call, extents grow at once and shrink only after some time,
+    /// so that moving objects do not change the texels of static ones. Call it where the camera cuts to another scene.
+    pub fn reset_history(&mut self) {
+        self.fit = DirectionalFit::default();
+    }
+
     /// Declares the contents of the maps invalid ([what a kept map relies on](crate#what-a-kept-map-relies-on)): the
     /// next frame draws every view.
     pub fn invalidate(&mut self) {

@@ -91,6 +91,13 @@ impl LocalLights {
         self.maps.invalidate();
     }
 
+    /// Discards the extents of earlier frames.
+    pub fn reset_history(&mut self) {
+        self.slots
+            .iter_mut()
+            .for_each(|slot| slot.fit.reset_history());
+    }
+
     /// Resets the state of a slot, whose next light then has no map until it is drawn.
     pub fn reset(&mut self, slot: u32) {
         self.slots[slot as usize] = SlotState::default();

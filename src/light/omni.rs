@@ -131,6 +131,12 @@ impl OmniShadow {
         self.lights.maps()
     }
 
+    /// Discards the extents of earlier frames. Without this call, extents grow at once and shrink only after some time,
+    /// so that moving objects do not change the texels of static ones. Call it where the camera cuts to another scene.
+    pub fn reset_history(&mut self) {
+        self.lights.reset_history();
+    }
+
     /// Declares the contents of the maps invalid ([what a kept map relies on](crate#what-a-kept-map-relies-on)): the
     /// next frame draws every view.
     pub fn invalidate(&mut self) {

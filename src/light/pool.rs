@@ -256,6 +256,12 @@ macro_rules! pool {
                 self.lights.maps()
             }
 
+            /// Discards the extents of earlier frames. Without this call, extents grow at once and shrink only after some time,
+            /// so that moving objects do not change the texels of static ones. Call it where the camera cuts to another scene.
+            pub fn reset_history(&mut self) {
+                self.lights.reset_history();
+            }
+
             /// Declares the contents of the maps invalid ([what a kept map relies
             /// on](crate#what-a-kept-map-relies-on)): the next frame draws every view, or as many as its budget allows;
             /// the other lights are lit everywhere until they are refreshed.

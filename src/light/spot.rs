@@ -122,6 +122,12 @@ impl SpotShadow {
         self.lights.maps()
     }
 
+    /// Discards the extents of earlier frames. Without this call, extents grow at once and shrink only after some time,
+    /// so that moving objects do not change the texels of static ones. Call it where the camera cuts to another scene.
+    pub fn reset_history(&mut self) {
+        self.lights.reset_history();
+    }
+
     /// Declares the contents of the map invalid ([what a kept map relies on](crate#what-a-kept-map-relies-on)): the
     /// next frame draws it.
     pub fn invalidate(&mut self) {

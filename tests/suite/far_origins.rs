@@ -208,6 +208,7 @@ fn scan(case: &Case, scene: &Scene, casters: &[MeshCaster]) -> usize {
         // The casters keep their positions in render space, so each origin puts them elsewhere in the world without a
         // change of their revisions.
         shadow.invalidate();
+        shadow.reset_history();
         let frame = DirectionalFrame {
             origin,
             light: DirectionalLight::new(case.direction),

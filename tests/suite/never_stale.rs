@@ -175,6 +175,9 @@ fn kept_maps_of_a_sun_are_what_would_be_drawn() {
                 let mut thrown_away = gpu.encoder();
                 let report = kept.record_frame(&mut thrown_away, &frame);
                 report.expect("a valid frame");
+                // The other light has the same history.
+                let report = fresh.record_frame(&mut thrown_away, &frame);
+                report.expect("a valid frame");
                 drop(thrown_away);
                 kept.invalidate();
             }
@@ -241,6 +244,9 @@ fn kept_faces_of_a_lamp_are_what_would_be_drawn() {
         if random.unit() < 0.02 {
             let mut thrown_away = gpu.encoder();
             let report = kept.record_frame(&mut thrown_away, &frame);
+            report.expect("a valid frame");
+            // The other light has the same history.
+            let report = fresh.record_frame(&mut thrown_away, &frame);
             report.expect("a valid frame");
             drop(thrown_away);
             kept.invalidate();

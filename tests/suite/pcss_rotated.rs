@@ -60,6 +60,9 @@ fn the_grain_is_fixed_in_the_world() {
             casters: &scene.list(),
             receivers: &[],
         };
+        if step % 10 == 0 {
+            shadow.reset_history();
+        }
         let report = record(gpu, &mut shadow, &frame);
         let view = &shadow.maps().view_uniforms()[0];
         let at = reference::receiver(view, filter, Bias::Auto, place, DVec3::Y);

@@ -3,11 +3,11 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use wgpu_shadows::caster::caster_shape;
-use wgpu_shadows::{Aabb, DirectionalShadowDescriptor, MeshCaster, ShadowCaster};
+use wgpu_shadows::{Aabb, DirectionalShadowDescriptor, MeshCaster, ShadowCaster, Stability};
 
 use super::stage::{SUM_ERROR, Sun, Verdict, differ, shining};
 use super::table;
-use crate::support::camera::Camera;
+use crate::support::camera::{Camera, Lens, Pose};
 use crate::support::frames::Coverage;
 use crate::support::gpu::gpu;
 use crate::support::probe::Point;
@@ -271,13 +271,10 @@ fn one_wild_box_leaves_other_shadows_in_place() {
         Aabb::new(Vec3::NEG_INFINITY, Vec3::INFINITY),
     ];
     for (index, bounds) in boxes.into_iter().enumerate() {
-        let mut meshes = meshes(50.0, 0.0, 0.001);
+        let meshes = meshes(50.0, 0.0, 0.001);
         let casters = casters(&meshes);
-        let small = Mesh::cuboid(Vec3::new(-0.9, 0.0, -0.9), Vec3::new(-0.7, 0.2, -0.7));
-        if bounds.is_finite() {
-            // An object with other bounds is left out of the frame, and casts nothing.
-            meshes.push(small.clone());
-        }
+        // The object's own shadow is far from the receivers.
+        let small = Mesh::cuboid(Vec3::new(-20.2, 0.0, -20.2), Vec3::new(-20.0, 0.2, -20.0));
         let small = small.caster(gpu(), &default_pipeline(gpu()), Mat4::IDENTITY);
         let wild = Watched::with_bounds(small, bounds);
         let mut list = listed(&casters);
@@ -304,5 +301,51 @@ fn one_wild_box_leaves_other_shadows_in_place() {
         "a box of +-1e5 to +-1e9, infinite or NaN for an object of 0.2 m, four cascades",
         "settled receivers in the shadows of others as the truth says, broken bounds named",
         all.words(),
+    );
+}
+
+/// An orthographic camera sees the same wherever it stands along its view: its distance costs no texels.
+#[test]
+fn an_orthographic_camera_may_be_far_away() {
+    let mut all = Verdict::default();
+    let mut coarsest = 0.0_f64;
+    let meshes = meshes(50.0, 0.0, 0.001);
+    let casters = casters(&meshes);
+    for away in [4.0, 100.0, 1e3, 1e4] {
+        for stability in [Stability::TightFit, Stability::BoundingSphere] {
+            let target = DVec3::new(0.0, 0.4, 0.0);
+            let camera = Camera {
+                pose: Pose::looking_at(target + DVec3::new(0.5, 0.6, 0.62) * away, target),
+                lens: Lens::Orthographic {
+                    sides: [-2.0, 2.0, -1.5, 1.5],
+                    near: 0.1,
+                    far: 2.0 * away,
+                },
+                reversed: true,
+            };
+            let mut sun = Sun::new(&DirectionalShadowDescriptor {
+                stability,
+                ..Default::default()
+            });
+            let coverage = Coverage::Camera(camera.view());
+            sun.record(
+                DVec3::ZERO,
+                shining(LIGHT),
+                coverage,
+                &listed(&casters),
+                &[],
+            );
+            coarsest = coarsest.max(sun.texel());
+            let verdict = around_robot(&sun, &triangles(&meshes[1..]), LIGHT, 2.0 * SETTLED);
+            verdict.assert_right(&format!("{stability:?} from {away}"));
+            all.add(&verdict);
+        }
+    }
+    // The ground that is seen is 6 m deep along the view: a sphere of 3.9 m in radius, 3.8 mm a texel.
+    assert!(coarsest < 5e-3, "{coarsest}");
+    table::record(
+        "orthographic cameras 4 to 1e4 away, both stabilities",
+        "settled receivers as the truth says, texels below 5 mm in maps of 2048",
+        format!("{}, texels up to {:.2} mm", all.words(), coarsest * 1e3),
     );
 }

@@ -58,6 +58,7 @@ fn edge_error(lamp: &mut OmniShadow, ask: &Ask, direction: DVec3, random: &mut R
         casters: &scene.list(),
         receivers: &EVERYWHERE,
     };
+    lamp.reset_history();
     record_omni(gpu, lamp, &frame).expect("a frame");
     // The receivers are on a square twice as far away, around its true shadow, which is twice as large.
     let texel = 2.0 / f64::from(MAP_SIZE);
