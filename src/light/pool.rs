@@ -256,8 +256,9 @@ macro_rules! pool {
                 self.lights.maps()
             }
 
-            /// Discards the extents of earlier frames. Without this call, extents grow at once and shrink only after some time,
-            /// so that moving objects do not change the texels of static ones. Call it where the camera cuts to another scene.
+            /// Discards the extents of earlier frames. Without this call, extents grow at once and shrink only after
+            /// some time, so that moving objects do not change the texels of static ones. Call it where the camera cuts
+            /// to another scene.
             pub fn reset_history(&mut self) {
                 self.lights.reset_history();
             }
