@@ -53,6 +53,9 @@ struct ShadowViewUniform {
     // Is the position of the first texel in a grid that is fixed in the world, modulo 65536: x in the low 16 bits, y in
     // the high 16 bits.
     grid: u32,
+    // Is where shadows end. For a directional light it is a plane: its product with a position is above one where shadows are whole and
+    // below zero where they have ended. For a local light, x times the distance from the light is taken from w for the same.
+    limit: vec4<f32>,
 }
 
 struct ShadowReceiver {
@@ -105,6 +108,28 @@ fn shadow_view_weight(view: ShadowViewUniform, position: vec3<f32>) -> f32 {
     let texel = homogeneous.xy / homogeneous.w;
     let from_border = min(texel - view.inner.xy, view.inner.zw - texel);
     return clamp(min(from_border.x, from_border.y) / view.fade_texels, 1.0 / 4096.0, 1.0);
+}
+
+// Returns `visibility` faded to light toward the end of a directional light's shadows. A position that is not a number is lit.
+fn shadow_limited_by_depth(view: ShadowViewUniform, position: vec3<f32>, visibility: f32) -> f32 {
+    return shadow_faded(dot(view.limit.xyz, position) + view.limit.w, visibility);
+}
+
+// Returns `visibility` faded to light toward the end of a local light's range.
+fn shadow_limited_by_distance(view: ShadowViewUniform, position: vec3<f32>, visibility: f32) -> f32 {
+    return shadow_faded(view.limit.w - view.limit.x * length(position - view.anchor), visibility);
+}
+
+// Returns `visibility` as it is.
+fn shadow_not_limited(view: ShadowViewUniform, position: vec3<f32>, visibility: f32) -> f32 {
+    return visibility;
+}
+
+// Returns `visibility` at a weight of one or more, to the bit, and light at zero or less. The selection makes a weight that is
+// not a number light.
+fn shadow_faded(weight: f32, visibility: f32) -> f32 {
+    let faded = 1.0 - weight * (1.0 - visibility);
+    return select(select(1.0, faded, weight > 0.0), visibility, weight >= 1.0);
 }
 
 // Returns the receiver at `position` (render space), which the bias has moved to `moved` (relative to the anchor) and

@@ -157,6 +157,7 @@ fn create_shadow(
                 map_size,
                 filter,
                 bias,
+                ..Default::default()
             };
             Shadow::Spot(Box::new(SpotShadow::new(device, &descriptor)?))
         }
@@ -166,6 +167,7 @@ fn create_shadow(
                 map_size,
                 filter,
                 bias,
+                ..Default::default()
             };
             Shadow::Point(Box::new(OmniShadow::new(device, &descriptor)?))
         }

@@ -335,6 +335,7 @@ fn make_maps(
         map_size: local_map_size,
         filter: options.local_filter(),
         bias: options.bias,
+        ..Default::default()
     };
     for (number, lights) in spots.chunks(POOL_CAPACITY).enumerate() {
         let mut pool = SpotShadowPool::new(&gpu.device, &descriptor("spots", lights))

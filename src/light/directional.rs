@@ -1,18 +1,20 @@
 //! Defines `DirectionalShadow`: the shadows of the sun and of other distant lights.
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 use crate::cast::{FrameCasters, ViewDraws};
 use crate::check;
 use crate::fit::{
     DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, MAX_CASCADES, Receivers, Region,
 };
+use crate::light::distance_limit::distance_limit;
+use crate::light::large_triangles::depth_reach;
 use crate::receive::{
     LayerState, MapsFrame, Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, ShadowReport,
-    check_bias, check_planar_filter,
+    check_bias, check_fade, check_planar_filter,
 };
 use crate::{
-    Aabb, Bias, CascadeSplit, DepthFormat, Filter, ShadowError, ShadowFrame, ShadowView, Stability,
+    Bias, CascadeSplit, DepthFormat, Filter, ShadowError, ShadowFrame, ShadowView, Stability,
 };
 
 /// Describes what a [`DirectionalShadow`] is made of. [`DirectionalShadow::new`] returns [`ShadowError::OutOfRange`]
@@ -42,6 +44,9 @@ pub struct DirectionalShadowDescriptor<'a> {
     /// 0.1 hides that; two maps are sampled inside the blended border. Too large a value costs lookups and lets the
     /// coarser map blur what the finer one resolves.
     pub blend: f32,
+    /// Is the fraction of [`CameraView::max_distance`](crate::CameraView::max_distance), 0..=1, over which shadows fade to
+    /// light before they end there. The default is 0: they end at once. Without a distance it has no effect.
+    pub fade: f32,
     /// Selects what may change the extent of a cascade. The default is [`Stability::TightFit`].
     pub stability: Stability,
     /// Selects how the maps store depths. The default is [`DepthFormat::Float32`]. `Unorm16` halves their memory; the
@@ -60,6 +65,7 @@ impl Default for DirectionalShadowDescriptor<'_> {
             filter: Filter::default(),
             bias: Bias::Auto,
             blend: 0.0,
+            fade: 0.0,
             stability: Stability::TightFit,
             depth_format: DepthFormat::Float32,
         }
@@ -77,6 +83,7 @@ impl DirectionalShadowDescriptor<'_> {
         filter: Filter::Bilinear { sharpness: 1.0 },
         bias: Bias::Auto,
         blend: 0.0,
+        fade: 0.0,
         stability: Stability::TightFit,
         depth_format: DepthFormat::Float32,
     };
@@ -157,6 +164,7 @@ impl DirectionalShadow {
             (0.0..=0.5).contains(&descriptor.blend),
             descriptor.blend,
         )?;
+        check_fade("DirectionalShadowDescriptor::fade", descriptor.fade)?;
         check_planar_filter("DirectionalShadowDescriptor::filter", descriptor.filter)?;
         check::in_range(
             "DirectionalShadowDescriptor::filter",
@@ -170,6 +178,7 @@ impl DirectionalShadow {
             bias: descriptor.bias,
             depth_format: descriptor.depth_format,
             blend: descriptor.blend,
+            fade: descriptor.fade,
         };
         let maps = ShadowMaps::new(
             device,
@@ -232,8 +241,10 @@ impl DirectionalShadow {
         };
         let fit = self.fit.fit(&input, &self.limits, &mut self.scratch)?;
         let views = self.drawn_views(&fit, &input, &frame.casters)?;
-        let layers: [_; MAX_CASCADES] =
-            std::array::from_fn(|layer| LayerState::directional(layer as u32, fit.slices[layer]));
+        let limit = distance_limit(frame.region, self.maps.sampling().fade);
+        let layers: [_; MAX_CASCADES] = std::array::from_fn(|layer| {
+            LayerState::directional(layer as u32, limit, fit.slices[layer])
+        });
         let maps_frame = MapsFrame {
             views,
             layers: &layers[..self.limits.cascades],
@@ -280,7 +291,7 @@ impl DirectionalShadow {
             let view =
                 ShadowView::orthographic(&input.axes, light_bounds, input.origin, cascade as u32);
             let view = view.checked()?;
-            let reach = depth_reach(&view, input, casters, &drawn);
+            let reach = depth_reach(&view, casters, &drawn);
             views.push(ViewDraws::new(view.over_depths_from(reach), drawn));
         }
         Ok(views)
@@ -302,50 +313,4 @@ impl DirectionalShadow {
     pub fn invalidate(&mut self) {
         self.maps.invalidate();
     }
-}
-
-/// Is the error of the depths of a large triangle, as a multiple of the rounding of a single coordinate: the sum of
-/// products that gives a corner's depth is rounded, and the interpolation between corners is rounded once more.
-const LARGE_TRIANGLE_ROUNDING: f64 = 2.0;
-
-/// Returns the largest render coordinate from which depths in the view are computed. Rasterizers interpolate between
-/// the corners of a triangle, and each corner is rounded at its own position, so that a triangle whose corners are far
-/// outside the view brings their rounding into it. The triangles of a caster are assumed to be of equal size and to
-/// cover its bounds; where their number is unknown, they are assumed to be as large as the bounds.
-fn depth_reach(
-    view: &ShadowView,
-    input: &FitInput<'_>,
-    casters: &FrameCasters<'_>,
-    drawn: &[u32],
-) -> f64 {
-    let mut reach = view.render_reach();
-    let center = view.anchor_render().as_dvec3();
-    let radius = reach - center.abs().max_element();
-    for &caster in drawn {
-        let bounds = &input.casters[caster as usize];
-        let corners_away = corners_away(bounds, center, radius);
-        if corners_away <= radius {
-            continue;
-        }
-        let diagonal = (bounds.max.as_dvec3() - bounds.min.as_dvec3()).length();
-        let pairs = f64::from(casters.facts(caster).triangles.max(2)) * 0.5;
-        let away = corners_away.min(diagonal / pairs.sqrt());
-        reach = reach.max(view.render_reach() + LARGE_TRIANGLE_ROUNDING * away);
-    }
-    reach
-}
-
-/// Returns the distance from `center` to the fourth nearest corner of a box, which is the distance of a whole side:
-/// near the foot of a high tower, depths follow from the corners at its foot. Returns 0 for a box that surrounds the
-/// view (a sphere of `radius`), because its corners give no information: it bounds a terrain of many triangles, or it
-/// is wrong.
-fn corners_away(bounds: &Aabb, center: DVec3, radius: f64) -> f64 {
-    let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
-    if min.cmplt(center - radius).all() && max.cmpgt(center + radius).all() {
-        return 0.0;
-    }
-    let mut distances: [f64; 8] =
-        std::array::from_fn(|corner| bounds.corner(corner).as_dvec3().distance(center));
-    distances.sort_unstable_by(f64::total_cmp);
-    distances[3]
 }

@@ -5,6 +5,7 @@ use glam::DVec3;
 
 use crate::cast::ViewDraws;
 use crate::fit::{LightAxes, LocalFit, LocalInput, MAX_LOCAL_VIEWS, Reached};
+use crate::light::distance_limit::range_limit;
 use crate::receive::{LayerState, MapsFrame, ShadowMaps, ShadowMapsDescriptor};
 use crate::{ShadowError, ShadowFrame, ShadowView, report::ShadowReport};
 
@@ -138,6 +139,7 @@ impl LocalLights {
                 layer: first_layer + view,
                 anchor_render: (position_world - frame.origin).as_vec3(),
                 reach_world,
+                limit: range_limit(light.range, maps.sampling().fade),
                 deferred: !candidate.refreshed,
                 slice: None,
             }));

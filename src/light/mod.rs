@@ -7,10 +7,14 @@
 //! spot.rs         SpotShadow: a light that shines into a cone
 //! omni.rs         OmniShadow: a light that shines in every direction
 //! pool.rs         pools of spot and point lights
+//! distance_limit.rs   where shadows end
+//! large_triangles.rs  the rounding that large triangles bring
 //! local.rs        what spot and point lights have in common
 //! ```
 
 mod directional;
+mod distance_limit;
+mod large_triangles;
 mod local;
 mod omni;
 mod pool;

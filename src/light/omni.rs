@@ -6,7 +6,7 @@ use crate::check;
 use crate::fit::LightAxes;
 use crate::light::local::{LocalLights, LocalPlacement};
 use crate::receive::{
-    Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, check_bias, check_filter,
+    Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, check_bias, check_fade, check_filter,
 };
 use crate::{Bias, Filter, ShadowError, ShadowFrame, report::ShadowReport};
 
@@ -24,6 +24,9 @@ pub struct OmniShadowDescriptor<'a> {
     pub filter: Filter,
     /// Selects how receivers are kept from shadowing themselves. The default is [`Bias::Auto`].
     pub bias: Bias,
+    /// Is the fraction of a light's range, 0..=1, over which shadows fade to light before they end there. The default is
+    /// 0: they end at once.
+    pub fade: f32,
 }
 
 impl Default for OmniShadowDescriptor<'_> {
@@ -33,6 +36,7 @@ impl Default for OmniShadowDescriptor<'_> {
             map_size: 1024,
             filter: Filter::default(),
             bias: Bias::Auto,
+            fade: 0.0,
         }
     }
 }
@@ -89,6 +93,7 @@ impl OmniShadow {
     ) -> Result<Self, ShadowError> {
         check_filter("OmniShadowDescriptor::filter", descriptor.filter)?;
         check_bias("OmniShadowDescriptor::bias", descriptor.bias)?;
+        check_fade("OmniShadowDescriptor::fade", descriptor.fade)?;
         let lights = LocalLights::new(
             device,
             &ShadowMapsDescriptor {
@@ -97,7 +102,10 @@ impl OmniShadow {
                 size_field: "OmniShadowDescriptor::map_size",
                 lights: 1,
                 layers_field: "the six faces of an OmniShadow",
-                sampling: Sampling::new(descriptor.filter, descriptor.bias),
+                sampling: Sampling {
+                    fade: descriptor.fade,
+                    ..Sampling::new(descriptor.filter, descriptor.bias)
+                },
                 views_per_light: 6,
                 selection: Selection::CubeFace,
                 indexed: false,

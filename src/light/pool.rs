@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::check;
 use crate::light::local::{LocalLights, LocalPlacement};
 use crate::receive::{
-    Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, check_bias, check_filter,
+    Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, check_bias, check_fade, check_filter,
     check_planar_filter,
 };
 use crate::{Bias, Filter, OmniLight, ShadowError, ShadowFrame, SpotLight, report::ShadowReport};
@@ -30,6 +30,9 @@ pub struct PoolDescriptor<'a> {
     pub filter: Filter,
     /// Selects how receivers are kept from shadowing themselves. The default is [`Bias::Auto`].
     pub bias: Bias,
+    /// Is the fraction of a light's range, 0..=1, over which shadows fade to light before they end there. The default is
+    /// 0: they end at once.
+    pub fade: f32,
 }
 
 impl Default for PoolDescriptor<'_> {
@@ -40,6 +43,7 @@ impl Default for PoolDescriptor<'_> {
             map_size: 512,
             filter: Filter::default(),
             bias: Bias::Auto,
+            fade: 0.0,
         }
     }
 }
@@ -164,6 +168,7 @@ macro_rules! pool {
             ) -> Result<Self, ShadowError> {
                 $filter_check("PoolDescriptor::filter", descriptor.filter)?;
                 check_bias("PoolDescriptor::bias", descriptor.bias)?;
+                check_fade("PoolDescriptor::fade", descriptor.fade)?;
                 check::in_range(
                     "PoolDescriptor::capacity",
                     "at least 1",
@@ -178,7 +183,10 @@ macro_rules! pool {
                         size_field: "PoolDescriptor::map_size",
                         lights: descriptor.capacity,
                         layers_field: "PoolDescriptor::capacity",
-                        sampling: Sampling::new(descriptor.filter, descriptor.bias),
+                        sampling: Sampling {
+ fade: descriptor.fade,
+ ..Sampling::new(descriptor.filter, descriptor.bias)
+ },
                         views_per_light: $views,
                         selection: $selection,
                         indexed: true,

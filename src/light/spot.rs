@@ -6,7 +6,8 @@ use crate::check;
 use crate::fit::{LightAxes, MAX_LOCAL_VIEWS};
 use crate::light::local::{LocalLights, LocalPlacement};
 use crate::receive::{
-    Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, check_bias, check_planar_filter,
+    Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, check_bias, check_fade,
+    check_planar_filter,
 };
 use crate::{Bias, Filter, ShadowError, ShadowFrame, report::ShadowReport};
 
@@ -23,6 +24,9 @@ pub struct SpotShadowDescriptor<'a> {
     pub filter: Filter,
     /// Selects how receivers are kept from shadowing themselves. The default is [`Bias::Auto`].
     pub bias: Bias,
+    /// Is the fraction of a light's range, 0..=1, over which shadows fade to light before they end there. The default is
+    /// 0: they end at once.
+    pub fade: f32,
 }
 
 impl Default for SpotShadowDescriptor<'_> {
@@ -32,6 +36,7 @@ impl Default for SpotShadowDescriptor<'_> {
             map_size: 1024,
             filter: Filter::default(),
             bias: Bias::Auto,
+            fade: 0.0,
         }
     }
 }
@@ -80,6 +85,7 @@ impl SpotShadow {
     ) -> Result<Self, ShadowError> {
         check_planar_filter("SpotShadowDescriptor::filter", descriptor.filter)?;
         check_bias("SpotShadowDescriptor::bias", descriptor.bias)?;
+        check_fade("SpotShadowDescriptor::fade", descriptor.fade)?;
         let lights = LocalLights::new(
             device,
             &ShadowMapsDescriptor {
@@ -88,7 +94,10 @@ impl SpotShadow {
                 size_field: "SpotShadowDescriptor::map_size",
                 lights: 1,
                 layers_field: "the map of a SpotShadow",
-                sampling: Sampling::new(descriptor.filter, descriptor.bias),
+                sampling: Sampling {
+                    fade: descriptor.fade,
+                    ..Sampling::new(descriptor.filter, descriptor.bias)
+                },
                 views_per_light: 1,
                 selection: Selection::OneView,
                 indexed: false,

@@ -54,3 +54,8 @@ pub(crate) fn check_bias(field: &'static str, bias: Bias) -> Result<(), ShadowEr
         format_args!("constant {constant}, slope {slope}"),
     )
 }
+
+/// Accepts a fraction of a distance over which shadows fade.
+pub(crate) fn check_fade(field: &'static str, fade: f32) -> Result<(), ShadowError> {
+    crate::check::in_range(field, "in 0..=1", (0.0..=1.0).contains(&fade), fade)
+}

@@ -106,6 +106,11 @@ fn visibility_function(name: &str, maps: &SampledMaps<'_>) -> String {
     let bias = sampling.bias.scheme(sampling.filter).name();
     let (filter, sampler) = sampling.filter.wgsl();
     let (sampler, _) = sampler_names(sampler);
+    let limit = match maps.selection {
+        Selection::Cascades => "limited_by_depth",
+        Selection::OneView | Selection::CubeFace if sampling.fade > 0.0 => "limited_by_distance",
+        Selection::OneView | Selection::CubeFace => "not_limited",
+    };
     if let Some((pattern, sample_count)) = sampling.filter.directions() {
         let (surface, normal) = match sampling.bias {
             Bias::Manual { .. } => ("sphere", ""),
@@ -124,6 +129,7 @@ fn visibility_function(name: &str, maps: &SampledMaps<'_>) -> String {
             bias,
             filter,
             sampler,
+            limit,
         }
         .fill();
     }
@@ -135,6 +141,7 @@ fn visibility_function(name: &str, maps: &SampledMaps<'_>) -> String {
             bias,
             filter,
             sampler,
+            limit,
         }
         .fill();
     }
@@ -145,6 +152,7 @@ fn visibility_function(name: &str, maps: &SampledMaps<'_>) -> String {
         bias,
         filter,
         sampler,
+        limit,
     }
     .fill()
 }

@@ -70,6 +70,8 @@ pub(crate) struct LayerState {
     pub anchor_render: Vec3,
     /// Is the world distance beyond which the light does not reach; infinite for a directional one.
     pub reach_world: f64,
+    /// Is where the light's shadows end, as the uniform has it.
+    pub limit: [f32; 4],
     /// States that the layer needed drawing and was deferred.
     pub deferred: bool,
     /// Describes the slice of a camera's view that the layer covers as a cascade.
@@ -78,11 +80,12 @@ pub(crate) struct LayerState {
 
 impl LayerState {
     /// Returns the state of a layer of a directional light.
-    pub fn directional(layer: u32, slice: Option<SliceReport>) -> Self {
+    pub fn directional(layer: u32, limit: [f32; 4], slice: Option<SliceReport>) -> Self {
         Self {
             layer,
             anchor_render: Vec3::ZERO,
             reach_world: f64::INFINITY,
+            limit,
             deferred: false,
             slice,
         }
@@ -297,6 +300,9 @@ impl ShadowMaps {
         }
         for draws in views {
             uniforms[draws.view.layer() as usize] = view_uniform(&draws.view, &self.sampling);
+        }
+        for base in layers {
+            uniforms[base.layer as usize].limit = base.limit;
         }
         for uniform in &mut uniforms {
             uniform.sample_radius = self.sampling.filter.radius_world();

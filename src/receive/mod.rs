@@ -31,7 +31,7 @@ mod uniforms;
 
 pub use bias::Bias;
 pub use bindings::{ShadowBindings, ShadowBindingsDescriptor};
-pub(crate) use check_sampling::{check_bias, check_filter, check_planar_filter};
+pub(crate) use check_sampling::{check_bias, check_fade, check_filter, check_planar_filter};
 pub use filter::Filter;
 pub use maps::ShadowMaps;
 pub(crate) use maps::{LayerState, MapsFrame, ShadowMapsDescriptor};
@@ -39,5 +39,5 @@ pub use report::{ShadowReport, ViewReport, ViewStatus};
 pub(crate) use sampled_maps::{SampledMaps, Selection};
 pub use uniforms::ShadowViewUniform;
 pub(crate) use uniforms::{
-    Sampling, empty_view_uniform, endless_range, view_uniform, view_uniform_bytes,
+    NO_LIMIT, Sampling, empty_view_uniform, endless_range, view_uniform, view_uniform_bytes,
 };

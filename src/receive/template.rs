@@ -48,12 +48,12 @@ templates! {
     /// Defines `shadow_view_NAME` of a point light.
     CubeFace("cube_face.wgsl") { name, index, first_view, any_view, view_count }
     /// Defines `shadow_NAME` as one lookup in one view.
-    SingleLookup("single_lookup.wgsl") { name, index, view_count, bias, filter, sampler }
+    SingleLookup("single_lookup.wgsl") { name, index, view_count, bias, filter, sampler, limit }
     /// Defines `shadow_NAME` as the weighted mean of a lookup in each of the cascades that blend at a position.
-    BlendedLookup("blended_lookup.wgsl") { name, index, view_count, bias, filter, sampler }
+    BlendedLookup("blended_lookup.wgsl") { name, index, view_count, bias, filter, sampler, limit }
     /// Defines `shadow_NAME` as the mean of lookups in many directions from a point light.
     MeanLookup("mean_lookup.wgsl") {
-        name, index, any_view, view_count, pattern, sample_count, sample_count_f32, surface, normal, bias, filter, sampler
+        name, index, any_view, view_count, pattern, sample_count, sample_count_f32, surface, normal, bias, filter, sampler, limit
     }
 }
 

@@ -76,6 +76,8 @@ pub struct ShadowViewUniform {
     /// Is the position of the map's first texel in a texel grid that is fixed in the world, modulo 65536: x in the low
     /// 16 bits, y in the high 16 bits.
     pub(crate) grid: u32,
+    /// Is where shadows end: a plane for a directional light, coefficients of the distance for a local one.
+    pub(crate) limit: [f32; 4],
 }
 
 impl ShadowViewUniform {
@@ -101,7 +103,9 @@ pub(crate) struct Sampling {
     pub bias: Bias,
     pub depth_format: DepthFormat,
     /// Is the fraction of a cascade's width over which it blends into the next one.
-    pub blend: f32,
+    pub(crate) blend: f32,
+    /// Is the fraction of the distance at which shadows end over which they fade to light.
+    pub(crate) fade: f32,
 }
 
 /// Bounds the distance in texels by which rounding may move a lookup: the error `6uN` is 1/350 of a texel at N = 8192.
@@ -115,6 +119,7 @@ impl Sampling {
             bias,
             depth_format: DepthFormat::Float32,
             blend: 0.0,
+            fade: 0.0,
         }
     }
 
@@ -146,6 +151,9 @@ impl Sampling {
     }
 }
 
+/// Limits nothing: the weight of shadows is one everywhere.
+pub(crate) const NO_LIMIT: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
+
 /// Returns the uniform of a view into which nothing casts: no receiver is inside it. The anchor of a light beyond the
 /// range of f32 is clamped to that range.
 pub(crate) fn empty_view_uniform(layer: u32, anchor_render: Vec3) -> ShadowViewUniform {
@@ -154,6 +162,7 @@ pub(crate) fn empty_view_uniform(layer: u32, anchor_render: Vec3) -> ShadowViewU
         layer,
         anchor: anchor_render.clamp(Vec3::MIN, Vec3::MAX).to_array(),
         map_size: 1.0,
+        limit: NO_LIMIT,
         ..ShadowViewUniform::zeroed()
     }
 }
@@ -198,6 +207,7 @@ pub(crate) fn view_uniform(view: &ShadowView, sampling: &Sampling) -> ShadowView
             .to_array(),
         fade_texels: sampling.blend * view.map_size() as f32,
         grid: view.world_grid(),
+        limit: NO_LIMIT,
     }
 }
 

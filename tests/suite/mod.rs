@@ -20,6 +20,7 @@ mod depth_texture;
 mod device_limits;
 mod device_loss;
 mod direction_filters;
+mod distance_limit;
 mod emitted_wgsl;
 mod engine_wgsl;
 mod errors;

@@ -313,5 +313,5 @@ fn the_wgsl_does_not_grow_with_the_lights() {
     assert_eq!(texts[0].1, texts[1].1);
     // The numbers of views, 12 and 192, differ by a digit wherever they occur, and they occur in a few positions.
     assert!(texts[1].2 - texts[0].2 <= 8);
-    assert!(texts[1].2 < 20_000, "{} bytes", texts[1].2);
+    assert!(texts[1].2 < 24_000, "{} bytes", texts[1].2);
 }

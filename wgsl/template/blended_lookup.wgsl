@@ -16,5 +16,6 @@ fn shadow_NAME(INDEX: u32, position: vec3<f32>, normal: vec3<f32>) -> f32 {
             share += weight;
         }
     }
-    return select(1.0, lit / share, share > 0.0);
+    let visibility = select(1.0, lit / share, share > 0.0);
+    return shadow_LIMIT(shadow_views_NAME[0], position, visibility);
 }

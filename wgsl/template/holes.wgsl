@@ -54,6 +54,11 @@ fn shadow_FILTER(map: MAP_TYPE, map_sampler: SAMPLER_TYPE, receiver: ShadowRecei
     return 1.0;
 }
 
+// LIMIT is what ends the light's shadows: `limited_by_depth`, `limited_by_distance` or `not_limited`.
+fn shadow_LIMIT(view: ShadowViewUniform, position: vec3<f32>, visibility: f32) -> f32 {
+    return visibility;
+}
+
 // PATTERN is the pattern of the directions around that of the receiver: `grid` or `star`.
 fn shadow_direction_PATTERN(index: u32) -> vec3<f32> {
     return shadow_direction_grid(index);

@@ -24,5 +24,5 @@ fn shadow_NAME(INDEX: u32, position: vec3<f32>, normal: vec3<f32>) -> f32 {
             lit += shadow_FILTER(shadow_map_NAME, SAMPLER, receiver);
         }
     }
-    return lit / SAMPLE_COUNT_F32;
+    return shadow_LIMIT(shadow_views_NAME[ANY_VIEW], position, lit / SAMPLE_COUNT_F32);
 }

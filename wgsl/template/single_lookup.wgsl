@@ -7,5 +7,6 @@ fn shadow_NAME(INDEX: u32, position: vec3<f32>, normal: vec3<f32>) -> f32 {
         return 1.0;
     }
     let receiver = shadow_receiver_BIAS(shadow_views_NAME[view], position, normal);
-    return shadow_FILTER(shadow_map_NAME, SAMPLER, receiver);
+    let visibility = shadow_FILTER(shadow_map_NAME, SAMPLER, receiver);
+    return shadow_LIMIT(shadow_views_NAME[view], position, visibility);
 }

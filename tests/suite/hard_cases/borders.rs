@@ -86,13 +86,18 @@ fn receivers_beyond_every_cascade_are_lit() {
                 );
                 let at = place.as_vec3().as_dvec3();
                 let inside = |nudge: DVec3| {
+                    let forward = -camera.pose.axes.z_axis;
+                    if forward.dot(at + nudge - camera.pose.eye) >= 60.0 {
+                        return false;
+                    }
                     let mut views = sun.shadow.maps().view_uniforms().iter();
                     views
                         .any(|view| receiver(view, filter, Bias::Auto, at + nudge, DVec3::Y).inside)
                 };
                 // f32 decides within a thousandth of a unit of a border.
                 let here = inside(DVec3::ZERO);
-                let nudge = 1e-3 * (1.0 + at.length() * 1e-2);
+                // The distance limit is sharp to a ten-thousandth.
+                let nudge = 1e-2 * (1.0 + at.length() * 1e-2);
                 if [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z]
                     .iter()
                     .any(|step| inside(*step * nudge) != here)

@@ -40,6 +40,7 @@ fn any_descriptor_is_taken_or_refused() {
         descriptor,
         |(map_size, count, filter, bias, split, lambda)| {
             let device = &gpu().device;
+            let cascade_split = split;
             let split = match split {
                 0 => CascadeSplit::Uniform,
                 1 => CascadeSplit::Logarithmic,
@@ -55,6 +56,7 @@ fn any_descriptor_is_taken_or_refused() {
                 split,
                 filter,
                 bias,
+                fade: if cascade_split == 0 { lambda } else { 0.5 },
                 blend: lambda,
                 stability: Stability::TightFit,
                 depth_format: DepthFormat::Unorm16,
@@ -65,6 +67,7 @@ fn any_descriptor_is_taken_or_refused() {
                 map_size,
                 filter,
                 bias,
+                fade: if cascade_split == 0 { lambda } else { 0.5 },
             };
             counts.count(&SpotShadow::new(device, &spot));
             let lamp = OmniShadowDescriptor {
@@ -72,6 +75,7 @@ fn any_descriptor_is_taken_or_refused() {
                 map_size,
                 filter,
                 bias,
+                fade: if cascade_split == 0 { lambda } else { 0.5 },
             };
             counts.count(&OmniShadow::new(device, &lamp));
             let pool = PoolDescriptor {
@@ -80,6 +84,7 @@ fn any_descriptor_is_taken_or_refused() {
                 map_size,
                 filter,
                 bias,
+                fade: if cascade_split == 0 { lambda } else { 0.5 },
             };
             counts.count(&SpotShadowPool::new(device, &pool));
             counts.count(&OmniShadowPool::new(device, &pool));

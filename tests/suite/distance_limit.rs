@@ -1,0 +1,205 @@
+//! Where shadows end: at a distance along the view, or at the end of a light's range, at once or over a fade.
+
+use glam::{DVec3, Vec3};
+use wgpu_shadows::{
+    Aabb, CameraView, Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    OmniLight, OmniShadow, OmniShadowDescriptor, ShadowFrameDescriptor, ShadowScene, Stability,
+};
+
+use crate::support::ask::Ask;
+use crate::support::camera::Camera;
+use crate::support::gpu::gpu;
+use crate::support::probe::Point;
+use crate::support::scene::{Mesh, Scene};
+
+/// A roof over everything, and a floor below it.
+fn hall() -> Scene {
+    let roof = Mesh::cuboid(Vec3::new(-300.0, 2.0, -300.0), Vec3::new(300.0, 2.5, 300.0));
+    Scene::new(gpu(), &[Mesh::floor(0.0, 200.0), roof])
+}
+
+fn camera(side: f64) -> Camera {
+    let eye = DVec3::new(side, 1.0, 0.0);
+    Camera::modern(eye, eye + DVec3::new(0.0, -0.1, -1.0), 1.0, 1.5)
+}
+
+/// Records the hall before cameras and asks for the floor along lines away from them.
+fn seen(
+    descriptor: &DirectionalShadowDescriptor<'_>,
+    cameras: &[CameraView],
+    points: &[Point],
+) -> Vec<f32> {
+    let gpu = gpu();
+    let hall = hall();
+    let mut shadow = DirectionalShadow::new(&gpu.device, descriptor).expect("a valid sun");
+    let ask = Ask::light(gpu, shadow.maps());
+    let mut scene = ShadowScene::new();
+    let list = hall.list();
+    let frame = scene
+        .frame(&ShadowFrameDescriptor {
+            origin: DVec3::ZERO,
+            coverage: Coverage::Cameras(cameras),
+            casters: &list,
+            receivers: &[],
+        })
+        .expect("a valid frame");
+    let mut encoder = gpu.encoder();
+    let light = DirectionalLight::new(Vec3::new(0.2, -1.0, 0.1));
+    shadow
+        .record(&mut encoder, &frame, &light)
+        .expect("a valid frame");
+    gpu.submit(encoder);
+    ask.points(gpu, points)
+}
+
+/// Places of the floor that the camera sees, with their depths along its view.
+fn places(camera: &Camera) -> Vec<(f64, Point)> {
+    let mut places = Vec::new();
+    for ahead in 3..110 {
+        for aside in -4..=4 {
+            let ahead = f64::from(ahead);
+            let place = DVec3::new(f64::from(aside) * 0.08 * ahead, 0.0, -ahead);
+            let place = place.as_vec3().as_dvec3();
+            if camera.sees(place, f64::INFINITY, 0.001) {
+                let forward = -camera.pose.axes.z_axis;
+                let depth = forward.dot(place - camera.pose.eye);
+                places.push((depth, Point::rounded(place, DVec3::Y)));
+            }
+        }
+    }
+    places
+}
+
+/// Beyond the distance everything is lit, whatever the maps hold; before it all is dark, in every way to fit the maps.
+#[test]
+fn shadows_end_at_the_distance() {
+    const DISTANCE: f32 = 60.0;
+    let camera = camera(0.0);
+    let view = camera.view().with_max_distance(DISTANCE);
+    let places = places(&camera);
+    let points: Vec<_> = places.iter().map(|(_, point)| *point).collect();
+    for stability in [Stability::TightFit, Stability::BoundingSphere] {
+        for (cascades, blend) in [(1, 0.0), (3, 0.0), (3, 0.2)] {
+            let descriptor = DirectionalShadowDescriptor {
+                map_size: 512,
+                cascades,
+                blend,
+                stability,
+                ..Default::default()
+            };
+            let mut counts = [0, 0];
+            for ((depth, _), seen) in places.iter().zip(seen(&descriptor, &[view], &points)) {
+                // The end is sharp to a ten-thousandth of the distance.
+                if (depth - f64::from(DISTANCE)).abs() < 0.01 {
+                    continue;
+                }
+                let lit = *depth > f64::from(DISTANCE);
+                counts[usize::from(lit)] += 1;
+                let wanted = if lit { 1.0 } else { 0.0 };
+                assert_eq!(seen, wanted, "{stability:?} {cascades} {blend} at {depth}");
+            }
+            assert!(counts.iter().all(|count| *count > 50), "{counts:?}");
+        }
+    }
+}
+
+/// Over the fade, visibility grows in proportion to the depth.
+#[test]
+fn shadows_fade_before_the_distance() {
+    let camera = camera(0.0);
+    let view = camera.view().with_max_distance(60.0);
+    let places = places(&camera);
+    let points: Vec<_> = places.iter().map(|(_, point)| *point).collect();
+    let descriptor = DirectionalShadowDescriptor {
+        map_size: 512,
+        fade: 0.25,
+        ..Default::default()
+    };
+    let mut partial = 0;
+    for ((depth, _), seen) in places.iter().zip(seen(&descriptor, &[view], &points)) {
+        let wanted = 1.0 - ((60.0 - depth) / 15.0).clamp(0.0, 1.0);
+        // The weight is a sum of four products of numbers up to four: a few ulps of four.
+        let error = (f64::from(seen) - wanted).abs();
+        assert!(
+            error < 32.0 * f64::from(f32::EPSILON),
+            "{seen} for {wanted} at {depth}"
+        );
+        partial += usize::from(wanted > 0.0 && wanted < 1.0);
+    }
+    assert!(partial > 30, "{partial}");
+}
+
+/// Two eyes share the farther end. Cameras that look apart have no common one, and keep their shadows.
+#[test]
+fn several_cameras_share_an_end_if_they_look_the_same_way() {
+    let [left, right] = [-0.03, 0.03].map(camera);
+    let places = places(&left);
+    let points: Vec<_> = places.iter().map(|(_, point)| *point).collect();
+    let descriptor = DirectionalShadowDescriptor {
+        map_size: 512,
+        ..Default::default()
+    };
+    let limited = |camera: &Camera, distance| camera.view().with_max_distance(distance);
+    let eyes = [limited(&left, 40.0), limited(&right, 50.0)];
+    for ((depth, _), seen) in places.iter().zip(seen(&descriptor, &eyes, &points)) {
+        if *depth < 49.9 {
+            assert_eq!(seen, 0.0, "{depth}");
+        } else if *depth > 50.1 {
+            assert_eq!(seen, 1.0, "{depth}");
+        }
+    }
+    let eye = DVec3::new(0.0, 1.0, -70.0);
+    let back = Camera::modern(eye, eye + DVec3::new(0.0, -0.1, 1.0), 1.0, 1.5);
+    let apart = [limited(&left, 40.0), limited(&back, 40.0)];
+    for ((depth, _), seen) in places.iter().zip(seen(&descriptor, &apart, &points)) {
+        // The other camera sees this up to 40 from its own eye.
+        if (45.0..60.0).contains(depth) {
+            assert_eq!(seen, 0.0, "{depth}");
+        }
+    }
+}
+
+/// A lamp's shadows fade toward the end of its range.
+#[test]
+fn a_lamps_shadows_fade_before_its_range() {
+    let gpu = gpu();
+    let descriptor = OmniShadowDescriptor {
+        map_size: 256,
+        fade: 0.5,
+        ..Default::default()
+    };
+    let mut lamp = OmniShadow::new(&gpu.device, &descriptor).expect("a valid lamp");
+    let ask = Ask::light(gpu, lamp.maps());
+    let shade = Mesh::cuboid(Vec3::new(-2.0, 1.0, -2.0), Vec3::new(2.0, 1.2, 2.0));
+    let parts = Scene::new(gpu, &[shade, Mesh::floor(-12.0, 40.0)]);
+    let list = parts.list();
+    let mut scene = ShadowScene::new();
+    let frame = scene
+        .frame(&ShadowFrameDescriptor {
+            origin: DVec3::ZERO,
+            coverage: Coverage::Everything,
+            casters: &list,
+            receivers: &[Aabb::new(Vec3::splat(-30.0), Vec3::splat(30.0))],
+        })
+        .expect("a valid frame");
+    let light = OmniLight {
+        position_world: DVec3::new(0.0, 2.0, 0.0),
+        range: 20.0,
+    };
+    let mut encoder = gpu.encoder();
+    lamp.record(&mut encoder, &frame, &light)
+        .expect("a valid frame");
+    gpu.submit(encoder);
+    let distances: Vec<f32> = (4..24).map(|step| step as f32 + 0.25).collect();
+    let points: Vec<_> = distances
+        .iter()
+        .map(|distance| Point::new(Vec3::new(0.0, 2.0 - distance, 0.0), Vec3::Y))
+        .collect();
+    for (distance, seen) in distances.iter().zip(ask.points(gpu, &points)) {
+        let wanted = 1.0 - ((20.0 - distance) / 10.0).clamp(0.0, 1.0);
+        assert!(
+            (seen - wanted).abs() < 32.0 * f32::EPSILON,
+            "{seen} for {wanted} at {distance}"
+        );
+    }
+}
