@@ -24,8 +24,8 @@ pub struct OmniShadowDescriptor<'a> {
     pub filter: Filter,
     /// Selects how receivers are kept from shadowing themselves. The default is [`Bias::Auto`].
     pub bias: Bias,
-    /// Is the fraction of a light's range, 0..=1, over which shadows fade to light before they end there. The default is
-    /// 0: they end at once.
+    /// Is the fraction of a light's range, in 0..=1, over which shadows fade to light before they end there. The
+    /// default is 0: they end at once.
     pub fade: f32,
 }
 

@@ -70,7 +70,7 @@ pub(crate) struct LayerState {
     pub anchor_render: Vec3,
     /// Is the world distance beyond which the light does not reach; infinite for a directional one.
     pub reach_world: f64,
-    /// Is where the light's shadows end, as the uniform has it.
+    /// Determines where the light's shadows end, as the member `limit` of the uniform.
     pub limit: [f32; 4],
     /// States that the layer needed drawing and was deferred.
     pub deferred: bool,
