@@ -235,7 +235,7 @@ mod tests {
         let in_rust = members!(
             texel_from_anchor plane_across plane_down plane_depth light anchor layer inner map_size depth_error
             depth_error_relative lateral_error offset_texels offset_world manual_constant manual_slope sharpness range
-            cone_cosine sample_radius camera penumbra fade_texels grid
+            cone_cosine sample_radius camera penumbra fade_texels grid limit
         );
         let source = shader::compose(&["view"]).expect("a module of the table");
         let module = naga::front::wgsl::parse_str(&source).expect("valid WGSL");
