@@ -109,6 +109,10 @@
 //! shading normal also works, but fails at silhouettes, where it points behind the facet. A normal on the wrong side pushes receivers
 //! into their own surface, which shows as acne everywhere.
 //!
+//! Derivatives of rounded positions are rounded: at coordinate `P` and distance `d` from the camera, in an image of 1000 pixels a
+//! radian, that normal errs by up to `5·10⁻⁴ P / d` radians. From some `P` = 100 `d` on, let
+//! [`ShadowFrameDescriptor::origin`] follow the camera, or pass a normal that the mesh has for its triangles.
+//!
 //! # What a kept map relies on
 //!
 //! A view keeps its map while its light, its fit and its casters do not change. A light knows what it has recorded, but not what the

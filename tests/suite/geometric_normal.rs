@@ -76,3 +76,52 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
         }
     }
 }
+
+/// Far from the origin of render space, positions are rounded, and so are their differences from pixel to pixel: a
+/// normal made of them errs by up to 8 u P / f radians, with P the largest coordinate, f the size of a pixel on the
+/// surface, and u = 2^-24. (Two rounded positions differ by up to 2 u P each way, on two axes, twice.)
+#[test]
+fn normals_err_by_the_rounding_of_positions() {
+    let gpu = gpu();
+    let corners = [
+        Vec3::new(-2.0, -2.0, -1.0),
+        Vec3::new(2.0, -2.0, 0.2),
+        Vec3::new(0.0, 3.0, 0.6),
+    ];
+    let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    let normal = normal.normalize();
+    let modules = shader::compose(&["normal"]).expect("a module of the table");
+    let fragment = "
+@fragment
+fn fragment(in: Varying) -> @location(0) vec4<f32> {
+    return vec4<f32>(shadow_geometric_normal(in.position, eye.place.xyz) * 0.5 + 0.5, 1.0);
+}
+";
+    let source = format!("{modules}{VERTEX}{fragment}");
+    let pixel = 2.0 / 0.3 / f64::from(SIZE);
+    let mut worst_share = 0.0_f64;
+    for exponent in 0..=5 {
+        let away = 3.7 * 10_f32.powi(exponent);
+        let place = Vec3::new(away, 0.6 * away, -0.8 * away);
+        let vertices = corners.map(|corner| corner + place);
+        let clip = Mat4::from_scale(Vec3::new(0.3, 0.3, 0.0)) * Mat4::from_translation(-place);
+        let uniform: Vec<f32> = clip
+            .to_cols_array()
+            .into_iter()
+            .chain([0.0, 0.0, 1.0, 0.0])
+            .collect();
+        let image = draw(gpu, &source, &uniform, &vertices, None);
+        let mut worst = 0.0_f64;
+        for y in SIZE / 4..SIZE * 3 / 4 {
+            let [nx, ny, nz, _] = image.get_pixel(SIZE / 2, y).0;
+            let [nx, ny, nz] = [nx, ny, nz].map(|byte| f64::from(byte) / 127.5 - 1.0);
+            let seen = Vec3::new(nx as f32, ny as f32, nz as f32);
+            worst = worst.max(f64::from(seen.angle_between(normal)));
+        }
+        let bound = 8.0 / f64::from(1 << 24) * f64::from(away) / pixel;
+        // A step of 8 bits is 1/127.5 on each of two axes.
+        assert!(worst <= bound + 1.5 / 127.5, "{worst} of {bound} at {away}");
+        worst_share = worst_share.max((worst - 1.5 / 127.5) / bound);
+    }
+    assert!(worst_share > 0.05, "the bound says nothing: {worst_share}");
+}
