@@ -4,11 +4,10 @@
 //! any order, and be loaded unchanged as WESL or naga_oil modules. The sampling functions take texture, sampler and
 //! view as arguments. No module in [`MODULES`] declares a binding, except the caster modules and those of whole passes.
 //!
-//! An engine with its own bind groups composes `["bias_plane", "filter_tent3"]` and calls
-//! `shadow_filter_tent3(map, map_sampler, shadow_receiver_plane(view, position, normal))`; `shadow_limited_by_depth(view,
-//! position, visibility)` then ends shadows at the cameras' `max_distance`. On devices whose shaders
-//! cannot gather (OpenGL ES 3.0, WebGL 2) it names `"texels_by_samples"` beside them and binds the maps as
-//! `texture_2d_array<f32>`.
+//! An engine with its own bind groups composes `["bias_plane", "filter_tent3"]` and calls `shadow_filter_tent3(map,
+//! map_sampler, shadow_receiver_plane(view, position, normal))`; `shadow_limited_by_depth(view, position, visibility)`
+//! then ends shadows at the cameras' `max_distance`. On devices whose shaders cannot gather (OpenGL ES 3.0, WebGL 2) it
+//! names `"texels_by_samples"` beside them and binds the maps as `texture_2d_array<f32>`.
 
 use crate::error::BindingsError;
 

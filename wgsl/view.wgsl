@@ -54,8 +54,9 @@ struct ShadowViewUniform {
     // Is the position of the first texel in a grid that is fixed in the world, modulo 65536: x in the low 16 bits, y in
     // the high 16 bits.
     grid: u32,
-    // Is where shadows end. For a directional light it is a plane: its product with a position is above one where shadows are whole and
-    // below zero where they have ended. For a local light, x times the distance from the light is taken from w for the same.
+    // Determines where shadows end, by a weight that is at least one where shadows are complete and at most zero where
+    // they have ended. For a directional light it is a plane whose product with a position is the weight. For a local
+    // light the weight is w minus x times the distance from the light.
     limit: vec4<f32>,
 }
 
@@ -111,7 +112,7 @@ fn shadow_view_weight(view: ShadowViewUniform, position: vec3<f32>) -> f32 {
     return clamp(min(from_border.x, from_border.y) / view.fade_texels, 1.0 / 4096.0, 1.0);
 }
 
-// Returns `visibility` faded to light toward the end of a directional light's shadows. A position that is not a number is lit.
+// Returns `visibility` faded to light toward the end of a directional light's shadows. A position with a NaN is lit.
 fn shadow_limited_by_depth(view: ShadowViewUniform, position: vec3<f32>, visibility: f32) -> f32 {
     return shadow_faded(dot(view.limit.xyz, position) + view.limit.w, visibility);
 }
@@ -121,13 +122,13 @@ fn shadow_limited_by_distance(view: ShadowViewUniform, position: vec3<f32>, visi
     return shadow_faded(view.limit.w - view.limit.x * length(position - view.anchor), visibility);
 }
 
-// Returns `visibility` as it is.
+// Returns `visibility` unchanged, for lights whose shadows do not fade.
 fn shadow_not_limited(view: ShadowViewUniform, position: vec3<f32>, visibility: f32) -> f32 {
     return visibility;
 }
 
-// Returns `visibility` at a weight of one or more, to the bit, and light at zero or less. The selection makes a weight that is
-// not a number light.
+// Returns `visibility`, to the bit, where the weight is one or more, 1 where it is zero or less, and the interpolation
+// in between. A weight that is NaN gives 1 as well, because both comparisons are then false.
 fn shadow_faded(weight: f32, visibility: f32) -> f32 {
     let faded = 1.0 - weight * (1.0 - visibility);
     return select(select(1.0, faded, weight > 0.0), visibility, weight >= 1.0);

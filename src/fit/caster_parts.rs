@@ -130,9 +130,9 @@ fn divide(casters: &Casters<'_>, caster: u32, seen: &[SeenReceiver], parts: &mut
     let bounds = &casters.bounds[caster as usize];
     let shadows_itself = casters.shapes[caster as usize].shadows_itself();
     let first = parts.len();
-    // Depths of a caster are rounded at its corners, and in maps that hold it the bias allows for twice that. A caster
-    // that rises no more than four times as high above its receivers would cost the contacts of all others more than
-    // it could show.
+    // The depths of a caster are rounded at its corners, and in maps that contain it the bias allows for twice that
+    // rounding. A caster that rises no more than four times as high above its receivers would cost more contact of all
+    // other shadows than its own shadow is worth.
     let farthest = bounds.min.abs().max(bounds.max.abs()).as_dvec3().length();
     let least_height = 8.0 * position_error_world(farthest);
     let toward_light = casters.axes.toward_light();

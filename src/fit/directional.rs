@@ -15,8 +15,8 @@ use crate::fit::split::MAX_CASCADES;
 use crate::fit::visible::{SeenBounds, SeenLists};
 use crate::{Aabb, ShadowError};
 
-/// Is the cosine of the angle, about a degree, by which a light turns from one frame to the next without losing the
-/// memory of its extents.
+/// Is the cosine of the largest angle, about a degree, by which a light may turn from one frame to the next and keep
+/// the history of its extents.
 const TURN_COSINE: f64 = 0.999_85;
 
 /// Holds the light-space bounds of a light's cascades, kept from frame to frame for their hysteresis.
@@ -27,7 +27,7 @@ pub(crate) struct DirectionalFit {
     held: [Option<HeldBounds>; MAX_CASCADES],
     /// Holds the axes of the light in the last frame.
     axes: Option<LightAxes>,
-    /// Holds the depths along the view between which receivers are seen.
+    /// Holds the depths along the view between which receivers are visible.
     held_depths: Option<HeldDepth>,
     /// Describes the slices of the cascades of a camera's view.
     pub slices: [Option<SliceReport>; MAX_CASCADES],
@@ -44,8 +44,8 @@ pub(crate) struct FitScratch {
 }
 
 impl DirectionalFit {
-    /// Returns whether the extents of this frame count for a light with `axes`. Where a light turns at once, no shadow
-    /// stands still.
+    /// Returns whether the extents of the last frame apply to a light with `axes`. A light that turns by a large angle
+    /// moves all shadows, so that none of them needs to keep its texels.
     fn holds_for(&self, axes: &LightAxes) -> bool {
         self.axes.is_some_and(|held| {
             held.toward_light().dot(axes.toward_light()) > TURN_COSINE

@@ -39,7 +39,7 @@ struct Extent {
 }
 
 impl LocalFit {
-    /// Forgets the extents of earlier frames.
+    /// Discards the extents of earlier frames.
     pub fn reset_history(&mut self) {
         self.held = [None; MAX_LOCAL_VIEWS];
         self.held_reach = None;

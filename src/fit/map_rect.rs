@@ -74,7 +74,7 @@ impl HeldRect {
     }
 }
 
-/// Returns start and texel size along one axis, and what is held of the size.
+/// Returns the start and the texel size along one axis, and the size to be held for the next frame.
 fn fit_axis(
     request: &MapRectRequest,
     held: Option<&HeldRect>,

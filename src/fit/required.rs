@@ -79,10 +79,10 @@ pub(crate) fn camera_slice<'a>(
     })
 }
 
-/// Returns the depths along the view of what the spheres of a camera's slices must hold. The slices of a perspective
-/// camera end where its volume ends, so that nothing but the projection changes them. An orthographic camera may stand
-/// anywhere along its view, and its near and far plane say nothing of where the scene is: its slices end where what is
-/// seen of the receivers ends, in steps that change rarely.
+/// Returns the depths along the view that the spheres of a camera's slices must contain. The slices of a perspective
+/// camera end where its volume ends, so that only the projection changes them. An orthographic camera may be anywhere
+/// along its view, and its near and far planes do not bound the scene closely: its slices end where the visible
+/// receivers end, in steps that change rarely.
 fn sphere_range(camera: &CameraFrustum, held_depths: Option<&HeldDepth>) -> (f64, f64) {
     let (near, far) = camera.depth_range();
     match held_depths {
@@ -93,7 +93,7 @@ fn sphere_range(camera: &CameraFrustum, held_depths: Option<&HeldDepth>) -> (f64
     }
 }
 
-/// Returns the depths along the view between which receivers are seen, in steps that change rarely.
+/// Returns the depths along the view between which receivers are visible, in steps that change rarely.
 pub(crate) fn held_depths(visible: &SeenBounds, held: Option<&HeldDepth>) -> Option<HeldDepth> {
     let (near, far) = (visible.depth_near, visible.depth_far);
     let least = f64::EPSILON.sqrt() * near.abs().max(far.abs()).max(f64::MIN_POSITIVE);

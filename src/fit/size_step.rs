@@ -26,37 +26,37 @@ pub(crate) fn size_step_up(size: f64) -> f64 {
         .unwrap_or(4.0 * octave)
 }
 
-/// Is the number of frames after which a size that was larger than needed in all of them is reduced, where one size step
-/// is to be gained. Two seconds at sixty frames.
+/// Is the number of frames after which a size is reduced if it was larger than needed in all of them, by at least one
+/// size step. This is two seconds at sixty frames per second.
 const SHRINK_FRAMES: u32 = 120;
 
-/// Is how far ahead of the need a size grows that grew already within the last [`SHRINK_FRAMES`]: an octave, so that what
-/// moves away steadily changes the size once per octave.
+/// Is the factor by which a size exceeds the need if it grows a second time within [`SHRINK_FRAMES`]: an octave, so
+/// that an object that moves away steadily changes the size once per octave.
 const GROWTH_AHEAD: f64 = 2.0;
 
-/// Is the share of an earlier need below which the present one counts as another scene, after a cut of the camera for
-/// example. A size is then reduced in half the time.
+/// Is the fraction of an earlier need below which the present need counts as that of another scene, after a cut of the
+/// camera for example. The size is then reduced in half the time.
 const SUDDEN_DROP: f64 = 0.25;
 
-/// Is the share of a size below which it is of no use for what is needed, and is reduced at once: after a frame with
-/// wild bounds, for example.
+/// Is the fraction of a size below which a need makes the size useless, so that it is reduced at once: after a frame
+/// with far too large bounds, for example.
 const USELESS: f64 = 0.125;
 
 /// Holds a quantized size from frame to frame. It grows at once where more is needed and shrinks late, so that a moving
-/// caster or a turning camera does not change the texels of shadows that stand still.
+/// caster or a turning camera does not change the texels of static shadows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct HeldSize {
     step: f64,
     /// Is the largest size needed in the last `frames` frames.
     peak: f64,
-    /// Counts up to [`SHRINK_FRAMES`] and begins anew.
+    /// Counts the frames up to [`SHRINK_FRAMES`], and starts again at 0.
     frames: u32,
     /// Counts the frames since the step grew.
     since_growth: u32,
 }
 
 impl HeldSize {
-    /// Returns a size of the smallest step that is at least `size` (positive and finite).
+    /// Returns a held size without history, at the smallest step that is at least `size` (positive and finite).
     pub fn new(size: f64) -> Self {
         Self {
             step: size_step_up(size),
@@ -71,7 +71,7 @@ impl HeldSize {
         self.step
     }
 
-    /// Returns what is held in a frame that needs `size`, after the one that held this.
+    /// Returns the held size of the next frame, which needs `size`.
     pub fn next(self, size: f64) -> Self {
         if size > self.step {
             let grew_lately = self.since_growth < SHRINK_FRAMES;
@@ -88,7 +88,7 @@ impl HeldSize {
         if size < self.step * USELESS {
             return Self::new(size);
         }
-        // What was needed long ago, or far more than now, is no guide.
+        // A need of long ago, or one that is far greater than the present, is discarded.
         let begins_anew = self.frames >= SHRINK_FRAMES || size < self.peak * SUDDEN_DROP;
         let next = Self {
             peak: if begins_anew {
@@ -102,7 +102,7 @@ impl HeldSize {
         };
         let smaller = size_step_up(next.peak * SHRINK_SLACK);
         let gain = next.step / smaller;
-        // A size that grew ahead of the need stays ahead for a while.
+        // A size that exceeds the need after repeated growth is kept for some time.
         let least_gain = if next.since_growth < 4 * SHRINK_FRAMES {
             GROWTH_AHEAD
         } else {
@@ -124,7 +124,7 @@ impl HeldSize {
         next
     }
 
-    /// Returns what is held in a frame that needs `size`, after one that held `held`, if there was one.
+    /// Returns the held size of a frame that needs `size`. `held` is that of the frame before, if there was one.
     pub fn following(held: Option<Self>, size: f64) -> Self {
         held.map_or_else(|| Self::new(size), |held| held.next(size))
     }
@@ -145,7 +145,7 @@ mod tests {
         }
     }
 
-    /// Returns how often the step changes over the sizes, and the final step.
+    /// Returns how many times the step changes over the sizes, and the final step.
     fn changes(sizes: impl IntoIterator<Item = f64>) -> (usize, f64) {
         let mut sizes = sizes.into_iter();
         let mut held = HeldSize::new(sizes.next().expect("a size"));
@@ -171,8 +171,8 @@ mod tests {
         );
     }
 
-    /// Checks that growth by a factor of 16 over 1000 frames changes the step at most once per octave, and that the step
-    /// may shrink and grow again in between where growth is slow.
+    /// Checks that growth by a factor of 16 over 1000 frames changes the step at most once per octave, and that the
+    /// step may shrink and grow again in between where growth is slow.
     #[test]
     fn steady_growth_changes_the_step_rarely() {
         let growing = (0..1000).map(|frame| 16.0_f64.powf(f64::from(frame) / 1000.0));
@@ -191,7 +191,7 @@ mod tests {
                 })
                 .expect("it shrinks")
         };
-        // The first frames still count the larger need.
+        // In the first frames the larger need still counts.
         assert!((120..=242).contains(&drop(0.75)), "{}", drop(0.75));
         assert_eq!(drop(0.2), 61);
         assert_eq!(drop(0.1), 1);

@@ -11,10 +11,11 @@ pub enum Stability {
     #[default]
     TightFit,
     /// Uses a sphere around each slice of the camera's own volume, whether it has receivers or not: the extent depends
-    /// on the projection and the distance limit alone, so that no motion of the camera changes it. (Under an orthographic
-    /// camera the slices are of the depths at which receivers are seen, and change rarely. And texels are
-    /// never finer than four ulps of the largest render coordinate within the map rectangle, 1 mm at 2 km: far out, let
-    /// `origin` follow the camera.) A quarter as many texels fall on what is seen. It needs a far plane or a
-    /// `max_distance`; without either, recording returns [`ShadowError::OutOfRange`](crate::ShadowError::OutOfRange).
+    /// on the projection and the distance limit alone, so that no motion of the camera changes it. There are two
+    /// exceptions: under an orthographic camera the slices cover the depths at which receivers are visible, and change
+    /// rarely; and texels are never finer than four ulps of the largest render coordinate within the map rectangle,
+    /// which is 1 mm at 2 km. Far from the origin, let `origin` follow the camera. A quarter as many texels fall on
+    /// what is seen. It needs a far plane or a `max_distance`; without either, recording returns
+    /// [`ShadowError::OutOfRange`](crate::ShadowError::OutOfRange).
     BoundingSphere,
 }

@@ -44,8 +44,8 @@ pub struct DirectionalShadowDescriptor<'a> {
     /// 0.1 hides that; two maps are sampled inside the blended border. Too large a value costs lookups and lets the
     /// coarser map blur what the finer one resolves.
     pub blend: f32,
-    /// Is the fraction of [`CameraView::max_distance`](crate::CameraView::max_distance), 0..=1, over which shadows fade to
-    /// light before they end there. The default is 0: they end at once. Without a distance it has no effect.
+    /// Is the fraction of [`CameraView::max_distance`](crate::CameraView::max_distance), in 0..=1, over which shadows
+    /// fade to light before they end there. The default is 0: they end at once. Without a distance it has no effect.
     pub fade: f32,
     /// Selects what may change the extent of a cascade. The default is [`Stability::TightFit`].
     pub stability: Stability,
@@ -302,8 +302,8 @@ impl DirectionalShadow {
         &self.maps
     }
 
-    /// Forgets the extents of earlier frames, which otherwise shrink only after some time, so that what moves does not
-    /// change the texels of what stands still. Call it where the camera cuts to another scene.
+    /// Discards the extents of earlier frames. Without this call, extents grow at once and shrink only after some time,
+    /// so that moving objects do not change the texels of static ones. Call it where the camera cuts to another scene.
     pub fn reset_history(&mut self) {
         self.fit = DirectionalFit::default();
     }

@@ -97,7 +97,7 @@ impl LocalLights {
         self.maps.invalidate();
     }
 
-    /// Forgets the extents of earlier frames.
+    /// Discards the extents of earlier frames.
     pub fn reset_history(&mut self) {
         self.slots
             .iter_mut()

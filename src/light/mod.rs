@@ -7,9 +7,9 @@
 //! spot.rs         SpotShadow: a light that shines into a cone
 //! omni.rs         OmniShadow: a light that shines in every direction
 //! pool.rs         pools of spot and point lights
+//! local.rs        what spot and point lights have in common
 //! distance_limit.rs   where shadows end
 //! large_triangles.rs  the rounding that large triangles bring
-//! local.rs        what spot and point lights have in common
 //! ```
 
 mod directional;

@@ -24,8 +24,8 @@ pub struct OmniShadowDescriptor<'a> {
     pub filter: Filter,
     /// Selects how receivers are kept from shadowing themselves. The default is [`Bias::Auto`].
     pub bias: Bias,
-    /// Is the fraction of a light's range, 0..=1, over which shadows fade to light before they end there. The default is
-    /// 0: they end at once.
+    /// Is the fraction of a light's range, in 0..=1, over which shadows fade to light before they end there. The
+    /// default is 0: they end at once.
     pub fade: f32,
 }
 
@@ -143,8 +143,8 @@ impl OmniShadow {
         self.lights.maps()
     }
 
-    /// Forgets the extents of earlier frames, which otherwise shrink only after some time, so that what moves does not
-    /// change the texels of what stands still. Call it where the camera cuts to another scene.
+    /// Discards the extents of earlier frames. Without this call, extents grow at once and shrink only after some time,
+    /// so that moving objects do not change the texels of static ones. Call it where the camera cuts to another scene.
     pub fn reset_history(&mut self) {
         self.lights.reset_history();
     }

@@ -55,7 +55,7 @@ pub(crate) fn check_bias(field: &'static str, bias: Bias) -> Result<(), ShadowEr
     )
 }
 
-/// Accepts a fraction of a distance over which shadows fade.
+/// Accepts fractions, in 0..=1, of the distance over which shadows fade.
 pub(crate) fn check_fade(field: &'static str, fade: f32) -> Result<(), ShadowError> {
-    crate::check::in_range(field, "in 0..=1", (0.0..=1.0).contains(&fade), fade)
+    in_range(field, "in 0..=1", (0.0..=1.0).contains(&fade), fade)
 }

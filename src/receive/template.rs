@@ -53,7 +53,8 @@ templates! {
     BlendedLookup("blended_lookup.wgsl") { name, index, view_count, bias, filter, sampler, limit }
     /// Defines `shadow_NAME` as the mean of lookups in many directions from a point light.
     MeanLookup("mean_lookup.wgsl") {
-        name, index, any_view, view_count, pattern, sample_count, sample_count_f32, surface, normal, bias, filter, sampler, limit
+        name, index, any_view, view_count, pattern, sample_count, sample_count_f32, surface, normal, bias, filter, sampler,
+        limit
     }
 }
 

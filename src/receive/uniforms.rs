@@ -78,7 +78,7 @@ pub struct ShadowViewUniform {
     /// Is the position of the map's first texel in a texel grid that is fixed in the world, modulo 65536: x in the low
     /// 16 bits, y in the high 16 bits.
     pub(crate) grid: u32,
-    /// Is where shadows end: a plane for a directional light, coefficients of the distance for a local one.
+    /// Determines where shadows end: a plane for a directional light, and coefficients of the distance for a local one.
     pub(crate) limit: [f32; 4],
 }
 
@@ -105,9 +105,9 @@ pub(crate) struct Sampling {
     pub bias: Bias,
     pub depth_format: DepthFormat,
     /// Is the fraction of a cascade's width over which it blends into the next one.
-    pub(crate) blend: f32,
-    /// Is the fraction of the distance at which shadows end over which they fade to light.
-    pub(crate) fade: f32,
+    pub blend: f32,
+    /// Is the fraction of the distance at which shadows end, over which they fade to light.
+    pub fade: f32,
 }
 
 /// Bounds the distance in texels by which rounding may move a lookup: the error `6uN` is 1/350 of a texel at N = 8192.
@@ -153,7 +153,7 @@ impl Sampling {
     }
 }
 
-/// Limits nothing: the weight of shadows is one everywhere.
+/// Is the uniform's `limit` for shadows that end where the maps end: their weight is one everywhere.
 pub(crate) const NO_LIMIT: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 
 /// Returns the uniform of a view into which nothing casts: no receiver is inside it. The anchor of a light beyond the
@@ -237,7 +237,7 @@ mod tests {
         let in_rust = members!(
             texel_from_anchor plane_across plane_down plane_depth light anchor layer inner map_size depth_error
             depth_error_relative lateral_error offset_texels offset_world manual_constant manual_slope sharpness range
-            cone_cosine sample_radius camera penumbra fade_texels grid
+            cone_cosine sample_radius camera penumbra fade_texels grid limit
         );
         let source = shader::compose(&["view"]).expect("a module of the table");
         let module = naga::front::wgsl::parse_str(&source).expect("valid WGSL");

@@ -1,4 +1,4 @@
-//! Where shadows end: at a distance along the view, or at the end of a light's range, at once or over a fade.
+//! Tests where shadows end: at a distance along the view or at the end of a light's range, at once or over a fade.
 
 use glam::{DVec3, Vec3};
 use wgpu_shadows::{
@@ -12,7 +12,7 @@ use crate::support::gpu::gpu;
 use crate::support::probe::Point;
 use crate::support::scene::{Mesh, Scene};
 
-/// A roof over everything, and a floor below it.
+/// Returns a floor and a roof that covers all of it.
 fn hall() -> Scene {
     let roof = Mesh::cuboid(Vec3::new(-300.0, 2.0, -300.0), Vec3::new(300.0, 2.5, 300.0));
     Scene::new(gpu(), &[Mesh::floor(0.0, 200.0), roof])
@@ -23,7 +23,7 @@ fn camera(side: f64) -> Camera {
     Camera::modern(eye, eye + DVec3::new(0.0, -0.1, -1.0), 1.0, 1.5)
 }
 
-/// Records the hall before cameras and asks for the floor along lines away from them.
+/// Records the hall for the cameras and returns the visibilities of `points`.
 fn seen(
     descriptor: &DirectionalShadowDescriptor<'_>,
     cameras: &[CameraView],
@@ -52,32 +52,33 @@ fn seen(
     ask.points(gpu, points)
 }
 
-/// Places of the floor that the camera sees, with their depths along its view.
-fn places(camera: &Camera) -> Vec<(f64, Point)> {
-    let mut places = Vec::new();
+/// Returns points of the floor that the camera sees, with their depths along its view.
+fn positions(camera: &Camera) -> Vec<(f64, Point)> {
+    let mut positions = Vec::new();
     for ahead in 3..110 {
         for aside in -4..=4 {
             let ahead = f64::from(ahead);
-            let place = DVec3::new(f64::from(aside) * 0.08 * ahead, 0.0, -ahead);
-            let place = place.as_vec3().as_dvec3();
-            if camera.sees(place, f64::INFINITY, 0.001) {
+            let position = DVec3::new(f64::from(aside) * 0.08 * ahead, 0.0, -ahead);
+            let position = position.as_vec3().as_dvec3();
+            if camera.sees(position, f64::INFINITY, 0.001) {
                 let forward = -camera.pose.axes.z_axis;
-                let depth = forward.dot(place - camera.pose.eye);
-                places.push((depth, Point::rounded(place, DVec3::Y)));
+                let depth = forward.dot(position - camera.pose.eye);
+                positions.push((depth, Point::rounded(position, DVec3::Y)));
             }
         }
     }
-    places
+    positions
 }
 
-/// Beyond the distance everything is lit, whatever the maps hold; before it all is dark, in every way to fit the maps.
+/// Checks that all receivers beyond the distance are lit, whatever the maps contain, and that all before it are dark,
+/// in every way to fit the maps.
 #[test]
 fn shadows_end_at_the_distance() {
     const DISTANCE: f32 = 60.0;
     let camera = camera(0.0);
     let view = camera.view().with_max_distance(DISTANCE);
-    let places = places(&camera);
-    let points: Vec<_> = places.iter().map(|(_, point)| *point).collect();
+    let positions = positions(&camera);
+    let points: Vec<_> = positions.iter().map(|(_, point)| *point).collect();
     for stability in [Stability::TightFit, Stability::BoundingSphere] {
         for (cascades, blend) in [(1, 0.0), (3, 0.0), (3, 0.2)] {
             let descriptor = DirectionalShadowDescriptor {
@@ -88,7 +89,7 @@ fn shadows_end_at_the_distance() {
                 ..Default::default()
             };
             let mut counts = [0, 0];
-            for ((depth, _), seen) in places.iter().zip(seen(&descriptor, &[view], &points)) {
+            for ((depth, _), seen) in positions.iter().zip(seen(&descriptor, &[view], &points)) {
                 // The end is sharp to a ten-thousandth of the distance.
                 if (depth - f64::from(DISTANCE)).abs() < 0.01 {
                     continue;
@@ -103,22 +104,22 @@ fn shadows_end_at_the_distance() {
     }
 }
 
-/// Over the fade, visibility grows in proportion to the depth.
+/// Checks that visibility grows in proportion to the depth over the fade.
 #[test]
 fn shadows_fade_before_the_distance() {
     let camera = camera(0.0);
     let view = camera.view().with_max_distance(60.0);
-    let places = places(&camera);
-    let points: Vec<_> = places.iter().map(|(_, point)| *point).collect();
+    let positions = positions(&camera);
+    let points: Vec<_> = positions.iter().map(|(_, point)| *point).collect();
     let descriptor = DirectionalShadowDescriptor {
         map_size: 512,
         fade: 0.25,
         ..Default::default()
     };
     let mut partial = 0;
-    for ((depth, _), seen) in places.iter().zip(seen(&descriptor, &[view], &points)) {
+    for ((depth, _), seen) in positions.iter().zip(seen(&descriptor, &[view], &points)) {
         let wanted = 1.0 - ((60.0 - depth) / 15.0).clamp(0.0, 1.0);
-        // The weight is a sum of four products of numbers up to four: a few ulps of four.
+        // The weight is a sum of four products whose values are at most four, so that its error is a few ulps of four.
         let error = (f64::from(seen) - wanted).abs();
         assert!(
             error < 32.0 * f64::from(f32::EPSILON),
@@ -129,19 +130,20 @@ fn shadows_fade_before_the_distance() {
     assert!(partial > 30, "{partial}");
 }
 
-/// Two eyes share the farther end. Cameras that look apart have no common one, and keep their shadows.
+/// Checks that two eyes share the farther end, and that cameras which look in different directions have no common end
+/// and keep their shadows.
 #[test]
 fn several_cameras_share_an_end_if_they_look_the_same_way() {
     let [left, right] = [-0.03, 0.03].map(camera);
-    let places = places(&left);
-    let points: Vec<_> = places.iter().map(|(_, point)| *point).collect();
+    let positions = positions(&left);
+    let points: Vec<_> = positions.iter().map(|(_, point)| *point).collect();
     let descriptor = DirectionalShadowDescriptor {
         map_size: 512,
         ..Default::default()
     };
     let limited = |camera: &Camera, distance| camera.view().with_max_distance(distance);
     let eyes = [limited(&left, 40.0), limited(&right, 50.0)];
-    for ((depth, _), seen) in places.iter().zip(seen(&descriptor, &eyes, &points)) {
+    for ((depth, _), seen) in positions.iter().zip(seen(&descriptor, &eyes, &points)) {
         if *depth < 49.9 {
             assert_eq!(seen, 0.0, "{depth}");
         } else if *depth > 50.1 {
@@ -151,7 +153,7 @@ fn several_cameras_share_an_end_if_they_look_the_same_way() {
     let eye = DVec3::new(0.0, 1.0, -70.0);
     let back = Camera::modern(eye, eye + DVec3::new(0.0, -0.1, 1.0), 1.0, 1.5);
     let apart = [limited(&left, 40.0), limited(&back, 40.0)];
-    for ((depth, _), seen) in places.iter().zip(seen(&descriptor, &apart, &points)) {
+    for ((depth, _), seen) in positions.iter().zip(seen(&descriptor, &apart, &points)) {
         // The other camera sees this up to 40 from its own eye.
         if (45.0..60.0).contains(depth) {
             assert_eq!(seen, 0.0, "{depth}");
@@ -159,7 +161,7 @@ fn several_cameras_share_an_end_if_they_look_the_same_way() {
     }
 }
 
-/// A lamp's shadows fade toward the end of its range.
+/// Checks that a lamp's shadows fade toward the end of its range.
 #[test]
 fn a_lamps_shadows_fade_before_its_range() {
     let gpu = gpu();

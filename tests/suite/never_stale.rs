@@ -175,7 +175,7 @@ fn kept_maps_of_a_sun_are_what_would_be_drawn() {
                 let mut thrown_away = gpu.encoder();
                 let report = kept.record_frame(&mut thrown_away, &frame);
                 report.expect("a valid frame");
-                // The other light has the same history.
+                // The other light records the same frame, so that both have the same history.
                 let report = fresh.record_frame(&mut thrown_away, &frame);
                 report.expect("a valid frame");
                 drop(thrown_away);
@@ -245,7 +245,7 @@ fn kept_faces_of_a_lamp_are_what_would_be_drawn() {
             let mut thrown_away = gpu.encoder();
             let report = kept.record_frame(&mut thrown_away, &frame);
             report.expect("a valid frame");
-            // The other light has the same history.
+            // The other light records the same frame, so that both have the same history.
             let report = fresh.record_frame(&mut thrown_away, &frame);
             report.expect("a valid frame");
             drop(thrown_away);

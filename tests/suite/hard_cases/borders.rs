@@ -96,7 +96,7 @@ fn receivers_beyond_every_cascade_are_lit() {
                 };
                 // f32 decides within a thousandth of a unit of a border.
                 let here = inside(DVec3::ZERO);
-                // The distance limit is sharp to a ten-thousandth.
+                // The distance limit is sharp to a ten-thousandth of the distance.
                 let nudge = 1e-2 * (1.0 + at.length() * 1e-2);
                 if [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z]
                     .iter()

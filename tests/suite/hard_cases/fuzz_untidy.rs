@@ -1,5 +1,5 @@
-//! Random scenes as people build them: grounds of any size that cast, with thickness, feet sunk into them, domes, and one object
-//! with wild bounds. Everything is default; receivers are compared with rays.
+//! Tests random scenes as people build them: grounds of any size that cast, with thickness, feet that are sunk into
+//! them, domes, and one object with broken bounds. All settings are the defaults, and receivers are compared with rays.
 //!
 //! The long run is `PROPTEST_CASES=10000 cargo test --test suite hard_cases::fuzz_untidy`.
 
@@ -21,13 +21,14 @@ use crate::support::random::Random;
 use crate::support::scene::{Mesh, Triangle, default_pipeline, occluded};
 use crate::support::watched::Watched;
 
-/// A scene of some boxes on a ground.
+/// Describes a scene of some boxes on a ground.
 #[derive(Clone, Debug)]
 struct Untidy {
-    /// Half the side of the ground, 1 to 1e5, and its thickness, 0 for a sheet.
+    /// Is half the side of the ground, from 1 to 1e5.
     half: f32,
+    /// Is the thickness of the ground; 0 for a sheet.
     thickness: f32,
-    /// Boxes with feet, some sunk into the ground: corner and size.
+    /// Holds the least corner and the size of each box. Some boxes are sunk into the ground.
     boxes: Vec<(Vec3, Vec3)>,
     light: DVec3,
     eye: DVec3,
@@ -63,7 +64,8 @@ fn untidy() -> impl Strategy<Value = Untidy> {
         },
     );
     let dome = prop::option::of(prop_oneof![Just(200.0_f32), Just(1e4_f32), Just(1e6_f32)]);
-    // A box that is not finite; finite ones cost texels, which one cascade does not have.
+    // The bounds of the additional object are not finite. Finite ones of such size would cost more texels than one
+    // cascade has.
     let wild = prop::option::of(prop_oneof![Just(f32::NAN), Just(f32::INFINITY)]);
     (half, thickness, boxes, light, eye, dome, wild).prop_map(
         |(half, thickness, boxes, light, eye, dome, wild)| Untidy {
@@ -87,7 +89,7 @@ impl Untidy {
         Mesh::cuboid(-corner - Vec3::Y * self.thickness, corner)
     }
 
-    /// Records the scene and compares what is seen of the ground around the boxes with rays.
+    /// Records the scene and compares the visibilities of the ground around the boxes with rays.
     fn verdict(&self) -> Verdict {
         let pipeline = default_pipeline(gpu());
         let shaped = |mesh: &Mesh| {
@@ -127,9 +129,9 @@ impl Untidy {
             .flat_map(|mesh| mesh.triangles(&Mat4::IDENTITY))
             .collect();
         let light = self.light.as_vec3().as_dvec3();
-        let dark = |place: DVec3| occluded(&triangles, place, -light, 0.0);
-        // Boxes of three metres and their shadows, twelve metres long at most, in a map of 2048: texels of 7 mm. Three of them,
-        // stretched by the slant of the light.
+        let dark = |position: DVec3| occluded(&triangles, position, -light, 0.0);
+        // The boxes extend over three metres and their shadows over twelve metres at most, so that a map of 2048 texels
+        // has texels of 7 mm. The margin is three of them, stretched by the slant of the light.
         let margin = 3.0 * 0.007 / -self.light.y + 0.005;
         let mut random = Random::new(3);
         let mut verdict = Verdict::default();
@@ -137,16 +139,16 @@ impl Untidy {
         let reach = f64::from(self.half).min(3.0);
         for _ in 0..400 {
             let low = DVec3::new(-reach, 0.0, -reach);
-            let place = random.point(low, -low).as_vec3().as_dvec3();
-            if !camera.sees(place, f64::INFINITY, 0.01) {
+            let position = random.point(low, -low).as_vec3().as_dvec3();
+            if !camera.sees(position, f64::INFINITY, 0.01) {
                 continue;
             }
-            let here = dark(place);
+            let here = dark(position);
             let settled = (0..12).all(|step| {
                 let angle = f64::from(step) * std::f64::consts::TAU / 12.0;
-                dark(place + DVec3::new(angle.cos(), 0.0, angle.sin()) * margin) == here
+                dark(position + DVec3::new(angle.cos(), 0.0, angle.sin()) * margin) == here
             });
-            points.push(Point::rounded(place, DVec3::Y));
+            points.push(Point::rounded(position, DVec3::Y));
             truths.push(settled.then_some(here));
         }
         if !points.is_empty() {

@@ -273,7 +273,7 @@ fn one_wild_box_leaves_other_shadows_in_place() {
     for (index, bounds) in boxes.into_iter().enumerate() {
         let meshes = meshes(50.0, 0.0, 0.001);
         let casters = casters(&meshes);
-        // Its own shadow is far from those that are looked at.
+        // The object's own shadow is far from the receivers.
         let small = Mesh::cuboid(Vec3::new(-20.2, 0.0, -20.2), Vec3::new(-20.0, 0.2, -20.0));
         let small = small.caster(gpu(), &default_pipeline(gpu()), Mat4::IDENTITY);
         let wild = Watched::with_bounds(small, bounds);
@@ -304,7 +304,7 @@ fn one_wild_box_leaves_other_shadows_in_place() {
     );
 }
 
-/// An orthographic camera sees the same wherever it stands along its view: its distance costs no texels.
+/// Checks that the distance of an orthographic camera, which does not change what the camera sees, costs no texels.
 #[test]
 fn an_orthographic_camera_may_be_far_away() {
     let mut all = Verdict::default();
@@ -341,7 +341,8 @@ fn an_orthographic_camera_may_be_far_away() {
             all.add(&verdict);
         }
     }
-    // The ground that is seen is 6 m deep along the view: a sphere of 3.9 m in radius, 3.8 mm a texel.
+    // The visible ground is 6 m deep along the view. A sphere around it has a radius of 3.9 m, which gives texels of
+    // 3.8 mm.
     assert!(coarsest < 5e-3, "{coarsest}");
     table::record(
         "orthographic cameras 4 to 1e4 away, both stabilities",

@@ -1,4 +1,4 @@
-//! Casters that move beside others that stand still: the shadows of these stay as they are.
+//! Tests that the shadows of static casters do not change while other casters move.
 
 use glam::{DVec3, Mat4, Quat, Vec3};
 use wgpu_shadows::{
@@ -16,14 +16,16 @@ use crate::support::scene::{Mesh, default_pipeline};
 
 const FRAMES: u32 = 300;
 
-/// Receivers on the ground around the still box.
+/// Returns receivers on the ground around the static box.
 fn samples() -> Vec<DVec3> {
     let steps = || (0..70).map(|step| -0.7 + f64::from(step) * 0.0311);
-    let places = steps().flat_map(|x| steps().map(move |z| DVec3::new(x, 0.0, z)));
-    places.map(|place| place.as_vec3().as_dvec3()).collect()
+    let positions = steps().flat_map(|x| steps().map(move |z| DVec3::new(x, 0.0, z)));
+    positions
+        .map(|position| position.as_vec3().as_dvec3())
+        .collect()
 }
 
-/// The moving casters of a scene, each a box around the origin, and their transforms in a frame.
+/// Describes the moving casters of a scene, each a box around the origin, and their transforms in a frame.
 struct Motion {
     name: &'static str,
     boxes: Vec<Vec3>,
@@ -57,7 +59,7 @@ fn motions() -> [Motion; 4] {
         Motion {
             name: "a growing crowd",
             boxes: crowd,
-            // One more joins every twelve frames, each a little farther away; before, it waits under the ground.
+            // Every twelve frames another caster rises from below the ground, each a little farther away.
             transforms: |index, time| {
                 let joined = time * 60.0 >= 12.0 * index as f32;
                 let angle = index as f32 * 2.4;
@@ -69,7 +71,7 @@ fn motions() -> [Motion; 4] {
     ]
 }
 
-/// What of the still shadow changed over the frames.
+/// Counts the changes of the static shadow over the frames.
 #[derive(Default)]
 struct Changes {
     frames: u32,
@@ -97,7 +99,7 @@ impl Changes {
     }
 }
 
-/// Plays a motion and asks for the visibility of the samples on which no moving caster ever casts.
+/// Plays a motion and looks up the visibilities of receivers onto which no moving caster ever casts.
 fn play(
     motion: &Motion,
     mut record: impl FnMut(&[&dyn ShadowCaster]) -> f64,
@@ -134,7 +136,7 @@ fn play(
         changes.texel(texel, last_texel);
         let seen = ask();
         if let Some(last) = &last {
-            // A change of a tenth is seen as a twitch; rounding is far below.
+            // A change by a tenth is visible as a twitch. Rounding is far below it.
             let twitches = last.iter().zip(&seen).any(|(a, b)| (a - b).abs() > 0.1);
             changes.frames += u32::from(twitches);
         }
@@ -144,7 +146,7 @@ fn play(
     changes
 }
 
-/// In at most one frame of a hundred, a still shadow changes because something else moves.
+/// Checks that a static shadow changes in at most one frame of a hundred because other casters move.
 #[test]
 fn still_shadows_stay_still_beside_moving_casters() {
     let mut words = Vec::new();
@@ -157,7 +159,7 @@ fn still_shadows_stay_still_beside_moving_casters() {
     );
     let points = level(&samples(), DVec3::ZERO);
     for motion in &motions() {
-        // The walker and the crowd cast away from the box; the ball and the fan are beside it.
+        // The walker and the crowd cast their shadows away from the box. The ball and the fan are beside it.
         let sun = std::cell::RefCell::new(Sun::new(&DirectionalShadowDescriptor {
             map_size: 512,
             ..Default::default()
@@ -219,7 +221,7 @@ fn still_shadows_of_a_lamp_stay_still_beside_moving_casters() {
                 };
                 let mut shadow = shadow.borrow_mut();
                 let report = record_omni(gpu(), &mut shadow, &frame).expect("a valid frame");
-                // The face that looks down holds the samples.
+                // The face that looks down contains the receivers.
                 f64::from(report.views[3].texel_size_world.max_element())
             },
             || ask.points(gpu(), &points),

@@ -210,7 +210,7 @@ fn a_window_that_moves_leaves_shadows_alone() {
         let t = f64::from(frame) * 0.05;
         let eye = DVec3::new(t.sin() * 4.0, 3.5, 5.0 + t.cos());
         let camera = Camera::modern(eye, DVec3::new(t.cos(), 0.4, -0.3), 0.7, 1.6);
-        // Extents that shrink at once move more often.
+        // Without a history, extents shrink at once, so that they change more often.
         sun.shadow.reset_history();
         let coverage = Coverage::Camera(camera.view());
         sun.record(DVec3::ZERO, shining(LIGHT), coverage, &scene.list(), &[]);
