@@ -7,7 +7,7 @@
 @group(1) @binding(4) var<uniform> lamp_views: array<ShadowViewUniform, 6>;
 
 fn sunlight(position: vec3<f32>, normal: vec3<f32>) -> f32 {
-    let receiver = shadow_receiver_plane(sun_view, position, normal);
+    let receiver = shadow_receiver_plane_directional(sun_view, position, normal);
     if !receiver.inside {
         return 1.0;
     }
@@ -16,7 +16,7 @@ fn sunlight(position: vec3<f32>, normal: vec3<f32>) -> f32 {
 
 fn lamplight(position: vec3<f32>, normal: vec3<f32>) -> f32 {
     let face = shadow_cube_face(position - lamp_views[0].anchor);
-    let receiver = shadow_receiver_plane(lamp_views[face], position, normal);
+    let receiver = shadow_receiver_plane_local(lamp_views[face], position, normal);
     if !receiver.inside {
         return 1.0;
     }

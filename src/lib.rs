@@ -147,7 +147,7 @@
 //!     @group(0) @binding(6) var<uniform> sun_views: array<ShadowViewUniform, 1>;
 //!
 //!     fn sunlight(position: vec3<f32>, normal: vec3<f32>) -> f32 {
-//!         let receiver = shadow_receiver_plane(sun_views[0], position, normal);
+//!         let receiver = shadow_receiver_plane_directional(sun_views[0], position, normal);
 //!         if !receiver.inside {
 //!             return 1.0;
 //!         }
@@ -190,7 +190,8 @@
 //!   `shadow_geometric_normal`;
 //! - of [`shader::MODULES`]: the names of the modules `view`, `cube_face`, `normal`, `texels_by_samples`, `bias_*`, and `filter_*`
 //!   except `filter_direction`; of their functions `shadow_view_holds`, `shadow_cube_face`, `shadow_geometric_normal`, and
-//!   `shadow_receiver_NAME` and `shadow_filter_NAME` of a module `bias_NAME` or `filter_NAME`; and of their structs
+//!   `shadow_receiver_NAME_directional` and `shadow_receiver_NAME_local` of a module `bias_NAME`, and `shadow_filter_NAME` of a module
+//!   `filter_NAME`; and of their structs
 //!   `ShadowReceiver` with the member `inside` and `ShadowViewUniform` with the member `anchor`;
 //! - in the text of a [`caster::CasterVertex::Wgsl`]: `shadow_caster_clip`.
 //!

@@ -5,7 +5,7 @@
 //! view as arguments. No module in [`MODULES`] declares a binding, except the caster modules and those of whole passes.
 //!
 //! An engine with its own bind groups composes `["bias_plane", "filter_tent3"]` and calls `shadow_filter_tent3(map,
-//! map_sampler, shadow_receiver_plane(view, position, normal))`; `shadow_limited_by_depth(view, position, visibility)`
+//! map_sampler, shadow_receiver_plane_directional(view, position, normal))`; `shadow_limited_by_depth(view, position, visibility)`
 //! then ends shadows at the cameras' `max_distance`. On devices whose shaders cannot gather (OpenGL ES 3.0, WebGL 2) it
 //! names `"texels_by_samples"` beside them and binds the maps as `texture_2d_array<f32>`.
 
@@ -54,7 +54,7 @@ pub(crate) const DEBUG_VIEW: ShaderModule = module!(
 pub(crate) const CASCADE_TINT: ShaderModule = module!(
     "cascade_tint",
     "pass/cascade_tint.wgsl",
-    ["view", "fullscreen"]
+    ["view", "place", "fullscreen"]
 );
 
 pub(crate) const GATHER_PROBE: ShaderModule =
@@ -67,9 +67,19 @@ const TEXELS_BY_SAMPLES: ShaderModule = ShaderModule {
 /// Lists every WGSL text of the library.
 pub const MODULES: &[ShaderModule] = &[
     module!("view", "view.wgsl", []),
-    module!("bias_plane", "bias_plane.wgsl", ["view"]),
-    module!("bias_normal_offset", "bias_normal_offset.wgsl", ["view"]),
-    module!("bias_manual", "bias_manual.wgsl", ["view"]),
+    module!("place", "place.wgsl", ["view"]),
+    module!("rounding", "rounding.wgsl", ["view", "place"]),
+    module!(
+        "bias_plane",
+        "bias_plane.wgsl",
+        ["view", "place", "rounding"]
+    ),
+    module!(
+        "bias_normal_offset",
+        "bias_normal_offset.wgsl",
+        ["view", "place", "rounding"]
+    ),
+    module!("bias_manual", "bias_manual.wgsl", ["view", "place"]),
     module!("texels", "texels.wgsl", ["view"]),
     TEXELS_BY_SAMPLES,
     module!("gather", "gather.wgsl", ["view", "texels"]),

@@ -1,29 +1,79 @@
 // Moves the receiver along its normal by the least distance that prevents self-shadowing of a plane under any kernel.
 //
-// That distance is d = (K + lateral error) * s * (|nx| + |ny|), with K the kernel's reach per axis in texels, s the
+// That distance is d = K * s * (|nx| + |ny|), with K the kernel's reach per axis in texels and the lateral error, s the
 // world size of a texel and n the normal in light space. In a perspective view the texel grows with the distance of the
 // offset point itself, which gives d / (1 - d'), with d' the offset per unit of view depth times the normal's component
 // away from the light. The whole kernel is compared with one reference depth.
 //
-// CPU reference: src/receive/reference.rs. Requires: view.
+// CPU reference: src/receive/reference. Requires: view, place, rounding.
 
-// Returns the receiver at `position` (render space), moved along its geometric normal.
-fn shadow_receiver_normal_offset(
+// Returns the receiver at `position` in a view of a directional light, moved along its geometric normal. Position and
+// normal are in render space.
+fn shadow_receiver_normal_offset_directional(
     view: ShadowViewUniform,
     position: vec3<f32>,
     normal: vec3<f32>,
 ) -> ShadowReceiver {
-    let relative = shadow_clear_of_rounding(view, position - view.anchor, normal);
-    let plane = shadow_plane(view, relative, normal);
-    let texels = view.offset_texels + view.lateral_error;
-    let offset = shadow_normal_offset(view, relative, plane, texels);
-    // This is the growth of w along the normal, which is zero for an orthographic view.
-    let growth = texels * (abs(plane.x) + abs(plane.y)) * max(dot(shadow_w_row(view).xyz, normal), 0.0);
-    let distance = offset / (1.0 - min(growth, 0.9)) + shadow_rounding_offset(view);
+    let place = shadow_place_directional(view, position);
+    return shadow_normal_offset_directional(view, view.mapping, place, shadow_light_from_render(view, normal));
+}
+
+// Returns the receiver at `position` in a view of a local light, moved along its geometric normal. Position and normal
+// are in render space.
+fn shadow_receiver_normal_offset_local(
+    view: ShadowViewUniform,
+    position: vec3<f32>,
+    normal: vec3<f32>,
+) -> ShadowReceiver {
+    let place = shadow_place_local(view, position);
+    return shadow_normal_offset_local(view, view.mapping, place, shadow_light_from_render(view, normal));
+}
+
+// Returns the receiver at a place of a directional light with a normal along the axes of light space.
+fn shadow_normal_offset_directional(
+    view: ShadowViewUniform,
+    mapping: ShadowMapping,
+    place: ShadowPlace,
+    normal: vec3<f32>,
+) -> ShadowReceiver {
+    let across = abs(normal.xy) * mapping.texel_size;
+    let offset = view.offset_texels * (across.x + across.y) + mapping.rounding;
+    let texel = place.texel_from_middle + normal.xy * offset * mapping.texel_scale;
+    let depth = place.depth + (mapping.depth_scale * (normal.z * offset) + view.depth_error);
+    return shadow_receiver(view, mapping, place, texel, depth, vec2<f32>(0.0));
+}
+
+// Returns the receiver at a place of a local light with a normal along the axes of light space. Its depth is that of
+// its plane, moved by the offset, at the texel to which the offset moves it; see `shadow_plane_local`.
+fn shadow_normal_offset_local(
+    view: ShadowViewUniform,
+    mapping: ShadowMapping,
+    place: ShadowPlace,
+    normal: vec3<f32>,
+) -> ShadowReceiver {
+    let height = dot(normal, place.light);
+    let rounding = shadow_local_rounding(view, place, height);
+    let rise = normal.xy * mapping.texel_size;
+    let per_w = view.offset_texels * (abs(rise.x) + abs(rise.y));
+    // This is the growth of w along the normal.
+    let growth = per_w * max(-normal.z, 0.0);
+    // Up to one half, 1 / (1 - growth) is at most 1 + 2 growth.
+    let offset = per_w * -place.light.z * (1.0 + 2.0 * growth);
     // Where the kernel reaches past the horizon of the surface, no offset prevents self-shadowing. Such a position is
     // lit: its depth is set nearer than any in the map.
-    let hopeless = (growth >= 0.9) | (distance >= shadow_light_height(view, relative, normal));
-    let moved = relative + normal * select(0.0, distance, (distance > 0.0) & !hopeless);
-    let depth_offset = select(view.depth_error, 2.0, hopeless);
-    return shadow_receiver_at(view, position, moved, vec2<f32>(0.0), depth_offset);
+    let hopeless = !((growth < 0.5) & (offset + rounding < abs(height)));
+    let moved = height + select(-rounding, rounding, height < 0.0) + offset;
+    let inverse_height = 1.0 / moved;
+    let gradient = rise * (mapping.depth_scale * inverse_height);
+    let shift = normal.xy * (offset * place.inverse_w) * mapping.texel_scale;
+    let raised = place.depth * ((height - moved) * inverse_height + mapping.rounding);
+    let depth = place.depth + (raised + (dot(gradient, shift) + view.depth_error));
+    return shadow_receiver(
+        view,
+        mapping,
+        place,
+        place.texel_from_middle + select(shift, vec2<f32>(0.0), hopeless),
+        select(depth, 2.0, hopeless),
+        vec2<f32>(0.0),
+    );
 }

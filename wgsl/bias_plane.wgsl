@@ -7,29 +7,89 @@
 // covered by `lateral_error` texels along the plane and `depth_error` in depth; facets finer than a texel are covered
 // by an offset of `offset_texels` along the normal.
 //
-// CPU reference: src/receive/reference.rs. Requires: view.
+// CPU reference: src/receive/reference. Requires: view, place, rounding.
 
 // Is the steepest gradient, in depth per texel. Steeper planes cross the whole depth range within a fraction of a
 // texel; the limit excludes infinity.
 const SHADOW_MAX_GRADIENT: f32 = 1e4;
 
-// Returns the receiver at `position` (render space) with the gradient of its tangent plane.
-fn shadow_receiver_plane(view: ShadowViewUniform, position: vec3<f32>, normal: vec3<f32>) -> ShadowReceiver {
-    let relative = shadow_clear_of_rounding(view, position - view.anchor, normal);
-    let surface = shadow_plane(view, relative, normal);
-    let wanted = shadow_normal_offset(view, relative, surface, view.offset_texels) + shadow_rounding_offset(view);
+// Returns the receiver at `position` in a view of a directional light, with the gradient of its tangent plane. Position
+// and normal are in render space.
+fn shadow_receiver_plane_directional(
+    view: ShadowViewUniform,
+    position: vec3<f32>,
+    normal: vec3<f32>,
+) -> ShadowReceiver {
+    let place = shadow_place_directional(view, position);
+    return shadow_plane_directional(view, view.mapping, place, shadow_light_from_render(view, normal));
+}
+
+// Returns the receiver at `position` in a view of a local light, with the gradient of its tangent plane. Position and
+// normal are in render space.
+fn shadow_receiver_plane_local(
+    view: ShadowViewUniform,
+    position: vec3<f32>,
+    normal: vec3<f32>,
+) -> ShadowReceiver {
+    let place = shadow_place_local(view, position);
+    return shadow_plane_local(view, view.mapping, place, shadow_light_from_render(view, normal));
+}
+
+// Returns the receiver at a place of a directional light with a normal along the axes of light space.
+//
+// The plane through the receiver has the height z = -(nx x + ny y) / nz toward the light; depths are heights times
+// `depth_scale`. The receiver is moved along its normal, across the map as well.
+fn shadow_plane_directional(
+    view: ShadowViewUniform,
+    mapping: ShadowMapping,
+    place: ShadowPlace,
+    normal: vec3<f32>,
+) -> ShadowReceiver {
+    // Is the rise of the plane per texel, times nz.
+    let rise = normal.xy * mapping.texel_size;
+    let offset = view.offset_texels * (abs(rise.x) + abs(rise.y)) + mapping.rounding;
+    // A plane that is seen edge-on has no gradient, nor does one whose normal is zero.
+    let per_rise = select(0.0, -mapping.depth_scale / normal.z, abs(normal.z) > 0.0);
+    let gradient = shadow_limited_gradient(rise * per_rise);
+    let texel = place.texel_from_middle + normal.xy * offset * mapping.texel_scale;
+    let depth = place.depth + mapping.depth_scale * (normal.z * offset);
+    return shadow_receiver(view, mapping, place, texel, depth + shadow_slack(view, gradient), gradient);
+}
+
+// Returns the receiver at a place of a local light with a normal along the axes of light space.
+//
+// With h = n · p, the position being relative to the light, the plane meets the direction of tangents (x, y) where
+// near / w = near (nx x + ny y - nz) / h. Moving the plane along its normal only changes h. The receiver is moved across
+// the map by the tangents of the same offset, and its depth is that of the moved plane there.
+fn shadow_plane_local(
+    view: ShadowViewUniform,
+    mapping: ShadowMapping,
+    place: ShadowPlace,
+    normal: vec3<f32>,
+) -> ShadowReceiver {
+    let height = dot(normal, place.light);
+    let rounding = shadow_local_rounding(view, place, height);
+    let rise = normal.xy * mapping.texel_size;
+    let wanted = view.offset_texels * -place.light.z * (abs(rise.x) + abs(rise.y));
     // The offset never reaches past the light: under the widest cones a texel is larger than the light's height above
     // the surface.
-    let offset = min(wanted, 0.5 * shadow_light_height(view, relative, normal));
-    let lifted = relative + normal * offset;
-    // This is the surface's plane moved by the offset: only the last component of (normal, -normal · point) changes.
-    let moved = offset * dot(normal, normal);
-    let plane = surface - moved * vec3<f32>(view.plane_across.w, view.plane_down.w, view.plane_depth.w);
-    // A plane that is seen edge-on has no gradient, nor does one whose normal is zero or NaN.
-    let has_gradient = abs(plane.z) > 0.0;
-    let limit = vec2<f32>(SHADOW_MAX_GRADIENT);
-    let gradient = select(vec2<f32>(0.0), clamp(-plane.xy / plane.z, -limit, limit), has_gradient);
-    let steepness = abs(gradient.x) + abs(gradient.y);
-    let slack = view.lateral_error * steepness + view.depth_error;
-    return shadow_receiver_at(view, position, select(relative, lifted, has_gradient), gradient, slack);
+    let offset = min(wanted, 0.5 * (abs(height) - rounding));
+    let moved = height + select(-rounding, rounding, height < 0.0) + offset;
+    // A plane through the light has no gradient, nor does one whose normal is zero.
+    let inverse_height = select(0.0, 1.0 / moved, abs(moved) > 0.0);
+    let gradient = shadow_limited_gradient(rise * (mapping.depth_scale * inverse_height));
+    let shift = normal.xy * (offset * place.inverse_w) * mapping.texel_scale;
+    let raised = place.depth * ((height - moved) * inverse_height + mapping.rounding);
+    let depth = place.depth + (raised + (dot(gradient, shift) + shadow_slack(view, gradient)));
+    return shadow_receiver(view, mapping, place, place.texel_from_middle + shift, depth, gradient);
+}
+
+// Returns a gradient whose components are finite.
+fn shadow_limited_gradient(gradient: vec2<f32>) -> vec2<f32> {
+    return clamp(gradient, vec2<f32>(-SHADOW_MAX_GRADIENT), vec2<f32>(SHADOW_MAX_GRADIENT));
+}
+
+// Returns the depth by which the plane's own depths are raised, for rounding.
+fn shadow_slack(view: ShadowViewUniform, gradient: vec2<f32>) -> f32 {
+    return view.lateral_error * (abs(gradient.x) + abs(gradient.y)) + view.depth_error;
 }

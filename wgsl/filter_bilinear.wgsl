@@ -1,16 +1,12 @@
 // Compares 2x2 gathered texels and weights the results bilinearly in full precision. The reach is one texel.
-// CPU reference: src/receive/reference.rs. Requires: view, texels, gather.
+// CPU reference: src/receive/reference. Requires: view, texels, gather.
 
 // Returns the visibility of the light, in [0, 1].
-fn shadow_filter_bilinear(
-    map: ShadowMap,
-    map_sampler: sampler,
-    receiver: ShadowReceiver,
-) -> f32 {
-    let from_centers = receiver.texel - 0.5;
-    let first = floor(from_centers);
-    let s = from_centers - first;
-    let lit = shadow_gather(map, map_sampler, receiver, first);
-    let rows = mix(lit.xz, lit.yw, s.x);
-    return shadow_sharpen(mix(rows.x, rows.y, s.y), receiver.sharpness);
+fn shadow_filter_bilinear(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver) -> f32 {
+    let kernel = shadow_kernel(receiver);
+    let s = kernel.fraction;
+    let depths = shadow_texels(map, map_sampler, receiver, kernel.base + 1.0);
+    let rows = shadow_kernel_rows(receiver, kernel, 0.0);
+    let lit = shadow_lit_rows(receiver, rows, 0.0, vec2<f32>(1.0 - s.x, s.x), depths);
+    return shadow_ramped(receiver, mix(lit.x, lit.y, s.y));
 }

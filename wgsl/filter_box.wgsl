@@ -1,17 +1,27 @@
-// Applies the 3x3 percentage-closer filter of the tutorial at learnopengl.com: the mean of nine nearest comparisons one
-// texel apart, in steps of a ninth, from four gathers. The reach is one and a half texels.
-// CPU reference: src/receive/reference.rs. Requires: view, texels, gather.
+// Applies the 3x3 percentage-closer filter of the tutorial at learnopengl.com: the mean of nearest comparisons, one
+// texel apart, with nine texels, in steps of a ninth, from four gathers. The reach is one and a half texels.
+// CPU reference: src/receive/reference. Requires: view, texels, gather.
 
 // Returns the visibility of the light, in [0, 1].
-fn shadow_filter_box(
+fn shadow_filter_box(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver) -> f32 {
+    let base = floor(receiver.texel);
+    let from_center = receiver.texel - 0.5 - base;
+    let kernel = ShadowKernel(base, from_center, receiver.depth - dot(receiver.gradient, from_center));
+    let upper = shadow_box_rows(map, map_sampler, receiver, kernel, -1.0);
+    let lower = shadow_box_rows(map, map_sampler, receiver, kernel, 1.0);
+    return shadow_ramped(receiver, upper.x + upper.y + lower.x);
+}
+
+// Returns the numbers of lit texels in two rows of three.
+fn shadow_box_rows(
     map: ShadowMap,
     map_sampler: sampler,
     receiver: ShadowReceiver,
-) -> f32 {
-    let first = floor(receiver.texel) - 1.0;
-    let near = shadow_gather(map, map_sampler, receiver, first);
-    let right = shadow_gather(map, map_sampler, receiver, first + vec2<f32>(2.0, 0.0));
-    let below = shadow_gather(map, map_sampler, receiver, first + vec2<f32>(0.0, 2.0));
-    let corner = shadow_gather(map, map_sampler, receiver, first + 2.0);
-    return (dot(near, vec4<f32>(1.0)) + right.x + right.z + below.x + below.y + corner.x) / 9.0;
+    kernel: ShadowKernel,
+    row: f32,
+) -> vec2<f32> {
+    let depths = shadow_texels_by_4(map, map_sampler, receiver, kernel.base + vec2<f32>(0.0, row + 1.0));
+    let rows = shadow_kernel_rows(receiver, kernel, row);
+    return shadow_lit_rows(receiver, rows, -1.0, vec2<f32>(1.0, 1.0), depths[0])
+        + shadow_lit_rows(receiver, rows, 1.0, vec2<f32>(1.0, 0.0), depths[1]);
 }

@@ -6,7 +6,7 @@
 // selects a face by that direction. It is compared with the receiver's tangent plane in that direction, clamped so that
 // it lies no farther from the light than the receiver. Under a manual bias it is compared with the receiver's distance,
 // as in the tutorial at learnopengl.com.
-// CPU reference of one sample: src/receive/reference.rs. Requires: view.
+// CPU reference of one sample: src/receive/reference. Requires: view.
 
 // Returns offset `index` in 0..64. Each component is one of ±1/4 and ±3/4.
 fn shadow_direction_grid(index: u32) -> vec3<f32> {

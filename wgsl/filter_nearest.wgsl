@@ -1,5 +1,5 @@
 // Compares with one texel. The reach is half a texel.
-// CPU reference: src/receive/reference.rs. Requires: view, texels, gather.
+// CPU reference: src/receive/reference. Requires: view, texels, gather.
 
 // Returns 1 where the receiver is lit, and 0 where it is shadowed.
 fn shadow_filter_nearest(

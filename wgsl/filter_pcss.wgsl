@@ -11,7 +11,7 @@
 // visibility over the disk that they spread. The result is exact for one planar occluder parallel to the map; elsewhere
 // averaging the occluders causes an error. Every texel is compared with the receiver's own plane, as in `gather`.
 //
-// CPU reference: src/receive/reference.rs. Requires: view, texels, gather, filter_tent3.
+// CPU reference: src/receive/reference. Requires: view, texels, gather, filter_tent3.
 
 // Is the radius of the widest disk in texels. Maps keep this much, and a texel more, free around what they cover.
 const SHADOW_PENUMBRA_REACH: f32 = 32.0;
@@ -48,7 +48,7 @@ fn shadow_occluders(
     receiver: ShadowReceiver,
     first: vec2<f32>,
 ) -> vec2<f32> {
-    let depths = shadow_texels(map, map_sampler, receiver, first);
+    let depths = shadow_texels(map, map_sampler, receiver, first + 1.0);
     let nearer = depths - shadow_references(receiver, first);
     let height = depths - receiver.depth;
     // An occluder counts within the disk that its height spreads, and half a texel farther for its own size.

@@ -1,7 +1,7 @@
 // Filters as `filter_pcss` does, with sample patterns that are rotated by another angle for each half texel. Noise then
 // replaces banding where a penumbra is so wide that its samples lie far apart. The noise is fixed in the world, since
 // the angle follows from the texel's position in a grid that is fixed in the world. CPU reference:
-// src/receive/reference.rs. Requires: view, texels, filter_pcss.
+// src/receive/reference. Requires: view, texels, filter_pcss.
 
 // Returns the visibility of the light, in [0, 1].
 fn shadow_filter_pcss_rotated(

@@ -1,26 +1,31 @@
 // Applies the kernel [1 2 1] per axis to bilinear comparisons: 4x4 texels in four gathers. The reach is two texels. The
 // kernel is that of Castaño 2013, "Shadow Mapping Summary", here over raw depths, so that every texel has a reference
-// depth of its own. CPU reference: src/receive/reference.rs. Requires: view, texels, gather.
+// depth of its own. CPU reference: src/receive/reference. Requires: view, texels, gather.
+//
+// The sum is written out, since naga limits the iterations of a loop, and compilers do not unroll such a loop. It is
+// taken two rows at a time, so that few depths are held at once: with more than 32 registers, fewer waves run.
 
 // Returns the visibility of the light, in [0, 1].
-fn shadow_filter_tent3(
+fn shadow_filter_tent3(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver) -> f32 {
+    let kernel = shadow_kernel(receiver);
+    let s = kernel.fraction.y;
+    let upper = shadow_tent3_rows(map, map_sampler, receiver, kernel, -1.0);
+    let lower = shadow_tent3_rows(map, map_sampler, receiver, kernel, 1.0);
+    let sum = dot(upper, vec2<f32>(1.0 - s, 2.0 - s)) + dot(lower, vec2<f32>(1.0 + s, s));
+    return shadow_ramped(receiver, sum);
+}
+
+// Returns the weighted sums of the comparisons in rows `row` and `row + 1`, times four.
+fn shadow_tent3_rows(
     map: ShadowMap,
     map_sampler: sampler,
     receiver: ShadowReceiver,
-) -> f32 {
-    let from_centers = receiver.texel - 0.5;
-    let base = floor(from_centers);
-    let s = from_centers - base;
-    let first = base - 1.0;
-    // These are the weights of pairs of texels along each axis, times four. The sum is written out, since naga limits
-    // the iterations of a loop, and compilers do not unroll such a loop.
-    let left = vec2<f32>(1.0 - s.x, 2.0 - s.x);
-    let right = vec2<f32>(1.0 + s.x, s.x);
-    let upper = vec2<f32>(1.0 - s.y, 2.0 - s.y);
-    let lower = vec2<f32>(1.0 + s.y, s.y);
-    let lit = dot(shadow_gather(map, map_sampler, receiver, first), vec4<f32>(left * upper.x, left * upper.y))
-        + dot(shadow_gather(map, map_sampler, receiver, first + vec2<f32>(2.0, 0.0)), vec4<f32>(right * upper.x, right * upper.y))
-        + dot(shadow_gather(map, map_sampler, receiver, first + vec2<f32>(0.0, 2.0)), vec4<f32>(left * lower.x, left * lower.y))
-        + dot(shadow_gather(map, map_sampler, receiver, first + 2.0), vec4<f32>(right * lower.x, right * lower.y));
-    return shadow_sharpen(lit / 16.0, receiver.sharpness);
+    kernel: ShadowKernel,
+    row: f32,
+) -> vec2<f32> {
+    let s = kernel.fraction.x;
+    let depths = shadow_texels_by_4(map, map_sampler, receiver, kernel.base + vec2<f32>(0.0, row + 1.0));
+    let rows = shadow_kernel_rows(receiver, kernel, row);
+    return shadow_lit_rows(receiver, rows, -1.0, vec2<f32>(1.0 - s, 2.0 - s), depths[0])
+        + shadow_lit_rows(receiver, rows, 1.0, vec2<f32>(1.0 + s, s), depths[1]);
 }

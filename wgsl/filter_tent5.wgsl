@@ -1,48 +1,34 @@
 // Applies the kernel [1 3 4 3 1] per axis to bilinear comparisons: 6x6 texels in nine gathers. The reach is three
 // texels. The kernel is that of Castaño 2013, "Shadow Mapping Summary", here over raw depths, so that every texel has a
-// reference depth of its own. CPU reference: src/receive/reference.rs. Requires: view, texels, gather.
+// reference depth of its own. CPU reference: src/receive/reference. Requires: view, texels, gather.
+//
+// The sum is written out and taken two rows at a time, as in `filter_tent3`.
 
 // Returns the visibility of the light, in [0, 1].
-fn shadow_filter_tent5(
-    map: ShadowMap,
-    map_sampler: sampler,
-    receiver: ShadowReceiver,
-) -> f32 {
-    let from_centers = receiver.texel - 0.5;
-    let base = floor(from_centers);
-    let s = from_centers - base;
-    let first = base - 2.0;
-    let across = shadow_tent5_weights(s.x);
-    let down = shadow_tent5_weights(s.y);
-    // The sum is written out, since naga limits the iterations of a loop, and compilers do not unroll such a loop.
-    let lit = shadow_tent5_rows(map, map_sampler, receiver, first, across, down[0])
-        + shadow_tent5_rows(map, map_sampler, receiver, first + vec2<f32>(0.0, 2.0), across, down[1])
-        + shadow_tent5_rows(map, map_sampler, receiver, first + vec2<f32>(0.0, 4.0), across, down[2]);
-    return shadow_sharpen(lit / 144.0, receiver.sharpness);
+fn shadow_filter_tent5(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver) -> f32 {
+    let kernel = shadow_kernel(receiver);
+    let s = kernel.fraction.y;
+    let upper = shadow_tent5_rows(map, map_sampler, receiver, kernel, -2.0);
+    let middle = shadow_tent5_rows(map, map_sampler, receiver, kernel, 0.0);
+    let lower = shadow_tent5_rows(map, map_sampler, receiver, kernel, 2.0);
+    let sum = dot(upper, vec2<f32>(1.0 - s, 3.0 - 2.0 * s))
+        + dot(middle, vec2<f32>(4.0 - s, 3.0 + s))
+        + dot(lower, vec2<f32>(1.0 + 2.0 * s, s));
+    return shadow_ramped(receiver, sum);
 }
 
-// Returns the weights of three pairs of texels along an axis, times twelve.
-fn shadow_tent5_weights(s: f32) -> mat3x2<f32> {
-    return mat3x2<f32>(
-        vec2<f32>(1.0 - s, 3.0 - 2.0 * s),
-        vec2<f32>(4.0 - s, 3.0 + s),
-        vec2<f32>(1.0 + 2.0 * s, s),
-    );
-}
-
-// Returns the weighted sum of the comparisons of two rows of six texels.
+// Returns the weighted sums of the comparisons in rows `row` and `row + 1`, times twelve.
 fn shadow_tent5_rows(
     map: ShadowMap,
     map_sampler: sampler,
     receiver: ShadowReceiver,
-    first: vec2<f32>,
-    across: mat3x2<f32>,
-    down: vec2<f32>,
-) -> f32 {
-    let left = shadow_gather(map, map_sampler, receiver, first);
-    let middle = shadow_gather(map, map_sampler, receiver, first + vec2<f32>(2.0, 0.0));
-    let right = shadow_gather(map, map_sampler, receiver, first + vec2<f32>(4.0, 0.0));
-    return dot(left, vec4<f32>(across[0] * down.x, across[0] * down.y))
-        + dot(middle, vec4<f32>(across[1] * down.x, across[1] * down.y))
-        + dot(right, vec4<f32>(across[2] * down.x, across[2] * down.y));
+    kernel: ShadowKernel,
+    row: f32,
+) -> vec2<f32> {
+    let s = kernel.fraction.x;
+    let depths = shadow_texels_by_6(map, map_sampler, receiver, kernel.base + vec2<f32>(-1.0, row + 1.0));
+    let rows = shadow_kernel_rows(receiver, kernel, row);
+    return shadow_lit_rows(receiver, rows, -2.0, vec2<f32>(1.0 - s, 3.0 - 2.0 * s), depths[0])
+        + shadow_lit_rows(receiver, rows, 0.0, vec2<f32>(4.0 - s, 3.0 + s), depths[1])
+        + shadow_lit_rows(receiver, rows, 2.0, vec2<f32>(1.0 + 2.0 * s, s), depths[2]);
 }

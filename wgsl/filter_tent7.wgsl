@@ -1,52 +1,37 @@
 // Applies the kernel [1 5 12 16 12 5 1] per axis to bilinear comparisons: 8x8 texels in sixteen gathers. The reach is
 // four texels. The kernel is that of Castaño 2013, "Shadow Mapping Summary", here over raw depths, so that every texel
-// has a reference depth of its own. CPU reference: src/receive/reference.rs. Requires: view, texels, gather.
+// has a reference depth of its own. CPU reference: src/receive/reference. Requires: view, texels, gather.
+//
+// The sum is written out and taken two rows at a time, as in `filter_tent3`.
 
 // Returns the visibility of the light, in [0, 1].
-fn shadow_filter_tent7(
-    map: ShadowMap,
-    map_sampler: sampler,
-    receiver: ShadowReceiver,
-) -> f32 {
-    let from_centers = receiver.texel - 0.5;
-    let base = floor(from_centers);
-    let s = from_centers - base;
-    let first = base - 3.0;
-    let across = shadow_tent7_weights(s.x);
-    let down = shadow_tent7_weights(s.y);
-    // The sum is written out, since naga limits the iterations of a loop, and compilers do not unroll such a loop.
-    let lit = shadow_tent7_rows(map, map_sampler, receiver, first, across, down[0])
-        + shadow_tent7_rows(map, map_sampler, receiver, first + vec2<f32>(0.0, 2.0), across, down[1])
-        + shadow_tent7_rows(map, map_sampler, receiver, first + vec2<f32>(0.0, 4.0), across, down[2])
-        + shadow_tent7_rows(map, map_sampler, receiver, first + vec2<f32>(0.0, 6.0), across, down[3]);
-    return shadow_sharpen(lit / 2704.0, receiver.sharpness);
+fn shadow_filter_tent7(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver) -> f32 {
+    let kernel = shadow_kernel(receiver);
+    let s = kernel.fraction.y;
+    let top = shadow_tent7_rows(map, map_sampler, receiver, kernel, -3.0);
+    let upper = shadow_tent7_rows(map, map_sampler, receiver, kernel, -1.0);
+    let lower = shadow_tent7_rows(map, map_sampler, receiver, kernel, 1.0);
+    let bottom = shadow_tent7_rows(map, map_sampler, receiver, kernel, 3.0);
+    let sum = dot(top, vec2<f32>(1.0 - s, 5.0 - 4.0 * s))
+        + dot(upper, vec2<f32>(12.0 - 7.0 * s, 16.0 - 4.0 * s))
+        + dot(lower, vec2<f32>(12.0 + 4.0 * s, 5.0 + 7.0 * s))
+        + dot(bottom, vec2<f32>(1.0 + 4.0 * s, s));
+    return shadow_ramped(receiver, sum);
 }
 
-// Returns the weights of four pairs of texels along an axis, times fifty-two.
-fn shadow_tent7_weights(s: f32) -> mat4x2<f32> {
-    return mat4x2<f32>(
-        vec2<f32>(1.0 - s, 5.0 - 4.0 * s),
-        vec2<f32>(12.0 - 7.0 * s, 16.0 - 4.0 * s),
-        vec2<f32>(12.0 + 4.0 * s, 5.0 + 7.0 * s),
-        vec2<f32>(1.0 + 4.0 * s, s),
-    );
-}
-
-// Returns the weighted sum of the comparisons of two rows of eight texels.
+// Returns the weighted sums of the comparisons in rows `row` and `row + 1`, times fifty-two.
 fn shadow_tent7_rows(
     map: ShadowMap,
     map_sampler: sampler,
     receiver: ShadowReceiver,
-    first: vec2<f32>,
-    across: mat4x2<f32>,
-    down: vec2<f32>,
-) -> f32 {
-    let outer_left = shadow_gather(map, map_sampler, receiver, first);
-    let left = shadow_gather(map, map_sampler, receiver, first + vec2<f32>(2.0, 0.0));
-    let right = shadow_gather(map, map_sampler, receiver, first + vec2<f32>(4.0, 0.0));
-    let outer_right = shadow_gather(map, map_sampler, receiver, first + vec2<f32>(6.0, 0.0));
-    return dot(outer_left, vec4<f32>(across[0] * down.x, across[0] * down.y))
-        + dot(left, vec4<f32>(across[1] * down.x, across[1] * down.y))
-        + dot(right, vec4<f32>(across[2] * down.x, across[2] * down.y))
-        + dot(outer_right, vec4<f32>(across[3] * down.x, across[3] * down.y));
+    kernel: ShadowKernel,
+    row: f32,
+) -> vec2<f32> {
+    let s = kernel.fraction.x;
+    let depths = shadow_texels_by_8(map, map_sampler, receiver, kernel.base + vec2<f32>(-2.0, row + 1.0));
+    let rows = shadow_kernel_rows(receiver, kernel, row);
+    return shadow_lit_rows(receiver, rows, -3.0, vec2<f32>(1.0 - s, 5.0 - 4.0 * s), depths[0])
+        + shadow_lit_rows(receiver, rows, -1.0, vec2<f32>(12.0 - 7.0 * s, 16.0 - 4.0 * s), depths[1])
+        + shadow_lit_rows(receiver, rows, 1.0, vec2<f32>(12.0 + 4.0 * s, 5.0 + 7.0 * s), depths[2])
+        + shadow_lit_rows(receiver, rows, 3.0, vec2<f32>(1.0 + 4.0 * s, s), depths[3]);
 }

@@ -1,20 +1,54 @@
-// Reads four raw depths at once and compares each with the receiver's reference depth at that texel.
+// Compares raw depths of a map with the receiver's reference depths at their texels. These are never farther from the
+// light than the receiver itself.
 //
-// CPU reference: src/receive/reference.rs. Requires: view, texels.
+// CPU reference: src/receive/reference. Requires: view, texels.
 
-// Returns 1 where lit and 0 where shadowed, for the texels (first), (first + x), (first + y), (first + x + y).
-fn shadow_gather(
-    map: ShadowMap,
-    map_sampler: sampler,
-    receiver: ShadowReceiver,
-    first: vec2<f32>,
-) -> vec4<f32> {
-    let lit = shadow_references(receiver, first) >= shadow_texels(map, map_sampler, receiver, first);
-    return select(vec4<f32>(0.0), vec4<f32>(1.0), lit);
+// Describes where a kernel lies on the map.
+struct ShadowKernel {
+    // Is the texel whose centre is next to the receiver, toward the upper left.
+    base: vec2<f32>,
+    // Is the distance of the receiver from that centre, from 0 to 1 along x and y.
+    fraction: vec2<f32>,
+    // Is the depth of the receiver's plane at that centre.
+    depth: f32,
 }
 
-// Returns the receiver's reference depths at four texels, in the same order. They are never farther from the light than
-// the receiver itself.
+// Returns where the kernel of a receiver lies.
+fn shadow_kernel(receiver: ShadowReceiver) -> ShadowKernel {
+    let from_centers = receiver.texel - 0.5;
+    let base = floor(from_centers);
+    let fraction = from_centers - base;
+    return ShadowKernel(base, fraction, receiver.depth - dot(receiver.gradient, fraction));
+}
+
+// Returns the depths of the receiver's plane in rows `row` and `row + 1` from a kernel's base, in the base's column.
+fn shadow_kernel_rows(receiver: ShadowReceiver, kernel: ShadowKernel, row: f32) -> vec2<f32> {
+    return kernel.depth + receiver.gradient.y * vec2<f32>(row, row + 1.0);
+}
+
+// Compares a block of 2x2 texels, whose left column is `column` columns from the kernel's base. `rows` is the depth of
+// the plane in its two rows, in the base's column, and `weights` the weight of its two columns. Returns for each row
+// the sum of the weights of the lit texels.
+fn shadow_lit_rows(
+    receiver: ShadowReceiver,
+    rows: vec2<f32>,
+    column: f32,
+    weights: vec2<f32>,
+    depths: vec4<f32>,
+) -> vec2<f32> {
+    let along = receiver.gradient.x * vec2<f32>(column, column + 1.0);
+    let references = max(vec4<f32>(rows.x + along, rows.y + along), vec4<f32>(receiver.depth));
+    let lit = select(vec4<f32>(0.0), weights.xyxy, references >= depths);
+    return vec2<f32>(lit.x + lit.y, lit.z + lit.w);
+}
+
+// Returns the visibility that a kernel's weighted sum of lit texels means, with a sharper edge: the ramp is stretched
+// around one half.
+fn shadow_ramped(receiver: ShadowReceiver, sum: f32) -> f32 {
+    return clamp(sum * receiver.ramp.x + receiver.ramp.y, 0.0, 1.0);
+}
+
+// Returns the receiver's reference depths at the texels (first), (first + x), (first + y), (first + x + y).
 fn shadow_references(receiver: ShadowReceiver, first: vec2<f32>) -> vec4<f32> {
     let to_first = first + 0.5 - receiver.texel;
     let rise = dot(receiver.gradient, to_first);
@@ -27,7 +61,13 @@ fn shadow_references(receiver: ShadowReceiver, first: vec2<f32>) -> vec4<f32> {
     return receiver.depth + max(vec4<f32>(rise) + along, vec4<f32>(0.0));
 }
 
-// Returns a visibility with a sharper edge: its ramp is stretched around one half.
-fn shadow_sharpen(visibility: f32, sharpness: f32) -> f32 {
-    return clamp((visibility - 0.5) * sharpness + 0.5, 0.0, 1.0);
+// Returns 1 where lit and 0 where shadowed, for the same texels.
+fn shadow_gather(
+    map: ShadowMap,
+    map_sampler: sampler,
+    receiver: ShadowReceiver,
+    first: vec2<f32>,
+) -> vec4<f32> {
+    let lit = shadow_references(receiver, first) >= shadow_texels(map, map_sampler, receiver, first + 1.0);
+    return select(vec4<f32>(0.0), vec4<f32>(1.0), lit);
 }

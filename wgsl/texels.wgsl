@@ -1,22 +1,62 @@
-// Reads four raw depths of a map at once, by a gather.
+// Reads raw depths of a map by gathers, four texels at once.
 //
 // Where shaders cannot gather (GLSL ES 3.0: OpenGL ES 3.0 and WebGL 2), `texels_by_samples` replaces this module.
 // Requires: view.
+//
+// A gather samples at the corner where four texels meet. Every position that selects other texels is half a texel away,
+// so rounding cannot select them. It returns the texels counter-clockwise from the lower left; here they are in the
+// order of rows: upper left, upper right, lower left, lower right. Beyond the sides of the map they are those of the
+// nearest texel inside.
 
 // Is the type of a map for the filters that compare each texel.
 alias ShadowMap = texture_depth_2d_array;
 
-// Returns the depths of the texels (first), (first + x), (first + y), (first + x + y). Beyond the sides of the map they
-// are those of the nearest texel inside.
-fn shadow_texels(
+// Returns the four texels around `corner`, in texel coordinates.
+fn shadow_texels(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
+    return textureGather(map, map_sampler, corner * receiver.uv_per_texel, receiver.layer).wzxy;
+}
+
+// Returns two rows of four texels, as two blocks of which the first is around `corner`.
+fn shadow_texels_by_4(
     map: ShadowMap,
     map_sampler: sampler,
     receiver: ShadowReceiver,
-    first: vec2<f32>,
-) -> vec4<f32> {
-    // The sample lies at the corner where the four texels meet. Every position that selects other texels is half a
-    // texel away, so rounding cannot select them.
-    let corner = (first + 1.0) / receiver.map_size;
-    // A gather returns the texels counter-clockwise from the lower left.
-    return textureGather(map, map_sampler, corner, receiver.layer).wzxy;
+    corner: vec2<f32>,
+) -> array<vec4<f32>, 2> {
+    let uv = corner * receiver.uv_per_texel;
+    return array<vec4<f32>, 2>(
+        textureGather(map, map_sampler, uv, receiver.layer).wzxy,
+        textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(2, 0)).wzxy,
+    );
+}
+
+// Returns two rows of six texels, as three blocks of which the first is around `corner`.
+fn shadow_texels_by_6(
+    map: ShadowMap,
+    map_sampler: sampler,
+    receiver: ShadowReceiver,
+    corner: vec2<f32>,
+) -> array<vec4<f32>, 3> {
+    let uv = corner * receiver.uv_per_texel;
+    return array<vec4<f32>, 3>(
+        textureGather(map, map_sampler, uv, receiver.layer).wzxy,
+        textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(2, 0)).wzxy,
+        textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(4, 0)).wzxy,
+    );
+}
+
+// Returns two rows of eight texels, as four blocks of which the first is around `corner`.
+fn shadow_texels_by_8(
+    map: ShadowMap,
+    map_sampler: sampler,
+    receiver: ShadowReceiver,
+    corner: vec2<f32>,
+) -> array<vec4<f32>, 4> {
+    let uv = corner * receiver.uv_per_texel;
+    return array<vec4<f32>, 4>(
+        textureGather(map, map_sampler, uv, receiver.layer).wzxy,
+        textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(2, 0)).wzxy,
+        textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(4, 0)).wzxy,
+        textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(6, 0)).wzxy,
+    );
 }

@@ -53,9 +53,10 @@ fn fragment_density(surface: Surface) -> @location(0) vec4<f32> {
     if view == 4u {
         return vec4<f32>(0.0);
     }
-    let texels_across = shadow_views_sun[view].texel_from_anchor * vec4<f32>(across, 0.0);
-    let texels_down = shadow_views_sun[view].texel_from_anchor * vec4<f32>(down, 0.0);
-    let texels = max(length(texels_across.xy), length(texels_down.xy));
+    let texel_scale = shadow_views_sun[view].mapping.texel_scale;
+    let texels_across = shadow_light_from_render(shadow_views_sun[0], across).xy * texel_scale;
+    let texels_down = shadow_light_from_render(shadow_views_sun[0], down).xy * texel_scale;
+    let texels = max(length(texels_across), length(texels_down));
     return vec4<f32>(clamp((log2(texels) + 8.0) / 16.0, 1.0 / 255.0, 1.0), 0.0, 0.0, 1.0);
 }
 

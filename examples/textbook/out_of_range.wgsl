@@ -7,7 +7,7 @@
 @group(1) @binding(2) var clamping_sampler: sampler_comparison;
 
 fn shadow_sun(position: vec3<f32>, normal: vec3<f32>) -> f32 {
-    let receiver = shadow_receiver_manual(sun_view, position, normal);
+    let receiver = shadow_receiver_manual_directional(sun_view, position, normal);
     // Beyond the map's sides the sampler reads the texel at the edge. Beyond its far plane the receiver's depth is
     // below every depth that a map can contain, so that whatever it contains seems to lie in front. `receiver.inside`
     // would be false there, and is not tested.

@@ -146,7 +146,7 @@ impl DebugView {
                 view.range = view.range.min(drawn.reach_world() as f32);
             }
         }
-        let local = shown.iter().any(|view| view.light[3] > 0.0);
+        let local = shown.iter().any(|view| view.is_local > 0.0);
         let header = DebugUniform {
             local: [u32::from(local), 0, 0, 0],
         };

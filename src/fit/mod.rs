@@ -59,6 +59,7 @@ pub(crate) use directional_input::{FitInput, FitLimits, Region};
 pub use footprint::SliceReport;
 pub(crate) use local::{LocalFit, MAX_LOCAL_VIEWS};
 pub(crate) use local_input::LocalInput;
+pub(crate) use map_rect::MapRect;
 pub(crate) use reached::Reached;
 pub(crate) use region::HalfSpaces;
 pub use split::CascadeSplit;

@@ -266,17 +266,6 @@ impl ShadowView {
         }
     }
 
-    /// Returns the radius of a penumbra in texels per difference of ndc depth between occluder and receiver, for a
-    /// directional light of `light_size` radians across or a local one of `light_size` world units in radius.
-    pub(crate) fn penumbra_texels(&self, light_size: f64) -> DVec2 {
-        match &self.placement {
-            ViewPlacement::Orthographic { bounds, .. } => {
-                bounds.depth.length() * (light_size * 0.5).tan() / bounds.rect.texel
-            }
-            ViewPlacement::Perspective { rect, near, .. } => light_size / near / rect.texel,
-        }
-    }
-
     /// Returns the position of the first texel in a grid of such texels that is fixed in the world (for a local light
     /// around it), modulo 65536: x in the low half, y, which grows downward, in the high.
     pub(crate) fn world_grid(&self) -> u32 {
@@ -304,15 +293,6 @@ impl ShadowView {
             DVec4::new(half, half, 0.0, 1.0),
         );
         texel_from_clip * self.clip_from_anchor
-    }
-
-    /// Returns the direction toward the light along the view's axis, and in w whether the light is local (1) or
-    /// directional (0).
-    pub(crate) fn light_axis(&self) -> DVec4 {
-        match &self.placement {
-            ViewPlacement::Orthographic { axes, .. } => axes.toward_light().extend(0.0),
-            ViewPlacement::Perspective { axes, .. } => axes.toward_light().extend(1.0),
-        }
     }
 
     /// Returns the world distance from a local light up to which receivers are seen and beyond which casters are left out;

@@ -166,21 +166,20 @@ fn check_names(lights: &NamedMaps<'_>) -> Result<(), BindingsError> {
 }
 
 /// Returns whether an identifier that is emitted for a light of this name could coincide with one of the library's own:
-/// of a module, a sampler, or the map, views or view function of another light.
+/// of a module, a sampler, or the map, views or functions of another light.
 fn is_taken(name: &str) -> bool {
-    let identifiers =
-        ["", "view_", "views_", "map_"].map(|prefix| format!("shadow_{prefix}{name}"));
+    const PREFIXES: [&str; 6] = ["view_", "views_", "map_", "place_of_", "axes_of_", "cascade_"];
+    let identifiers = PREFIXES.map(|prefix| format!("shadow_{prefix}{name}"));
+    let own = format!("shadow_{name}");
     let in_modules = shader::MODULES.iter().any(|module| {
         let mut words = module
             .source
             .split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
-        words.any(|word| identifiers.iter().any(|identifier| identifier == word))
+        words.any(|word| word == own || identifiers.iter().any(|identifier| identifier == word))
     });
     in_modules
         || ["point_sampler", "comparison_sampler"].contains(&name)
-        || name.starts_with("map_")
-        || name.starts_with("view_")
-        || name.starts_with("views_")
+        || PREFIXES.iter().any(|prefix| name.starts_with(prefix))
 }
 
 /// Accepts sets of lights for whose bindings the device's limits suffice.

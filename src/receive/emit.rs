@@ -41,7 +41,7 @@ pub(crate) fn wgsl(
             map_type: map_access(maps, access).map_wgsl(),
         }
         .fill();
-        text += &view_function(name, maps);
+        text += &place_functions(name, maps);
         text += &visibility_function(name, maps);
     }
     Ok(text)
@@ -69,41 +69,73 @@ fn modules(
     modules
 }
 
-/// Returns the function `shadow_view_NAME`, which selects the view that covers a position.
-fn view_function(name: &str, maps: &SampledMaps<'_>) -> String {
+/// Returns the functions that find where a position falls in the light's maps.
+fn place_functions(name: &str, maps: &SampledMaps<'_>) -> String {
     let index = index(maps);
+    let first_view = &first_view(maps);
+    let any_view = &any_view(maps);
     let view_count = &view_count(maps);
-    match maps.selection {
-        Selection::Cascades => template::Cascades {
-            name,
-            index,
-            view_count,
-        }
-        .fill(),
+    let mut text = match maps.selection {
+        Selection::Cascades => cascades(name, index, maps.view_count),
         Selection::OneView => template::OneView {
             name,
             index,
-            first_view: &first_view(maps),
+            first_view,
+            any_view,
             view_count,
         }
         .fill(),
         Selection::CubeFace => template::CubeFace {
             name,
             index,
-            first_view: &first_view(maps),
-            any_view: &any_view(maps),
+            first_view,
+            any_view,
             view_count,
         }
         .fill(),
+    };
+    text += &template::View {
+        name,
+        index,
+        view_count,
     }
+    .fill();
+    text
+}
+
+/// Returns the functions that find where a position falls in `count` cascades, written out from the last to the first.
+fn cascades(name: &str, index: &str, count: u32) -> String {
+    let mut next = count.saturating_sub(1).to_string();
+    let mut text = template::LastCascade { name, next: &next }.fill();
+    for cascade in (0..count.saturating_sub(1)).rev() {
+        let cascade = cascade.to_string();
+        text += &template::Cascade {
+            name,
+            cascade: &cascade,
+            next: &next,
+        }
+        .fill();
+        next = cascade;
+    }
+    text += &template::Cascades {
+        name,
+        index,
+        cascade: "0",
+    }
+    .fill();
+    text
 }
 
 /// Returns the function `shadow_NAME`, which looks up the light's visibility.
 fn visibility_function(name: &str, maps: &SampledMaps<'_>) -> String {
     let sampling = maps.sampling;
     let index = index(maps);
-    let view_count = &view_count(maps);
-    let bias = sampling.bias.scheme(sampling.filter).name();
+    let any_view = &any_view(maps);
+    let kind = match maps.selection {
+        Selection::Cascades => "directional",
+        Selection::OneView | Selection::CubeFace => "local",
+    };
+    let bias = &format!("{}_{kind}", sampling.bias.scheme(sampling.filter).name());
     let (filter, sampler) = sampling.filter.wgsl();
     let (sampler, _) = sampler_names(sampler);
     let limit = match maps.selection {
@@ -119,8 +151,7 @@ fn visibility_function(name: &str, maps: &SampledMaps<'_>) -> String {
         return template::MeanLookup {
             name,
             index,
-            any_view: &any_view(maps),
-            view_count,
+            any_view,
             pattern,
             sample_count: &format!("{sample_count}u"),
             sample_count_f32: &format!("{sample_count}.0"),
@@ -137,7 +168,7 @@ fn visibility_function(name: &str, maps: &SampledMaps<'_>) -> String {
         return template::BlendedLookup {
             name,
             index,
-            view_count,
+            view_count: &view_count(maps),
             bias,
             filter,
             sampler,
@@ -148,7 +179,7 @@ fn visibility_function(name: &str, maps: &SampledMaps<'_>) -> String {
     template::SingleLookup {
         name,
         index,
-        view_count,
+        any_view,
         bias,
         filter,
         sampler,

@@ -155,6 +155,24 @@ impl Filter {
         }
     }
 
+    /// Returns the factor and the summand that turn the weighted sum of a kernel's comparisons, with
+    /// integer weights along each axis, into visibility: a ramp through one half at half of the sum.
+    pub(crate) fn ramp(self) -> [f64; 2] {
+        let side = match self {
+            Self::Box => 3.0,
+            Self::Tent3 { .. } | Self::Pcss { .. } | Self::PcssRotated { .. } => 4.0,
+            Self::Tent5 { .. } => 12.0,
+            Self::Tent7 { .. } => 52.0,
+            Self::Nearest
+            | Self::Hardware
+            | Self::Bilinear { .. }
+            | Self::DirectionGrid { .. }
+            | Self::DirectionStar { .. } => 1.0,
+        };
+        let sharpness = f64::from(self.sharpness());
+        [sharpness / (side * side), 0.5 - 0.5 * sharpness]
+    }
+
     /// Returns the size of the light for [`Filter::Pcss`] and [`Filter::PcssRotated`]: radians of angular diameter for
     /// directional lights, world units of radius for local ones. It is 0 for the other filters.
     pub const fn light_size(self) -> f32 {

@@ -6,12 +6,11 @@ use crate::cast::{FrameCasters, Plan, Recorder, ViewDraws};
 use crate::error::DeviceError;
 use crate::gpu::{DepthMap, UploadBuffer, capture_device_errors};
 use crate::receive::layer_limits::check_layers;
+use crate::receive::light_uniforms::{LightUniforms, empty_view_uniform};
 use crate::receive::report::{ShadowReport, ViewReport, ViewStatus};
 use crate::receive::sampled_maps::{SampledMaps, Selection};
-use crate::receive::{
-    Sampling, ShadowViewUniform, empty_view_uniform, endless_range, view_uniform,
-    view_uniform_bytes,
-};
+use crate::receive::uniforms::ShadowMapping;
+use crate::receive::{Sampling, ShadowViewUniform, view_uniform_bytes};
 use crate::{ShadowError, ShadowView, report::SliceReport};
 
 /// Holds what shaders sample of a light: its depth texture and its uniform buffer, with the settings that determine how
@@ -144,7 +143,7 @@ impl ShadowMaps {
             views_per_light: descriptor.views_per_light,
             indexed: descriptor.indexed,
             views: Vec::new(),
-            uniform_values: vec![empty_view_uniform(0, Vec3::ZERO); layers as usize],
+            uniform_values: vec![empty_view_uniform(0, Vec3::ZERO, f64::INFINITY); layers as usize],
             report,
             memory: Memory::default(),
         })
@@ -291,15 +290,29 @@ impl ShadowMaps {
         let mut uniforms = std::mem::take(&mut self.memory.uniforms);
         uniforms.clear();
         let layer_count = self.map.layers();
-        uniforms.extend((0..layer_count).map(|layer| empty_view_uniform(layer, Vec3::ZERO)));
+        let empty = |layer| empty_view_uniform(layer, Vec3::ZERO, f64::INFINITY);
+        uniforms.extend((0..layer_count).map(empty));
         for base in layers {
-            uniforms[base.layer as usize] = ShadowViewUniform {
-                range: endless_range(base.range_world),
-                ..empty_view_uniform(base.layer, base.anchor_render)
-            };
+            let (anchor, range) = (base.anchor_render, base.range_world);
+            uniforms[base.layer as usize] = empty_view_uniform(base.layer, anchor, range);
         }
-        for draws in views {
-            uniforms[draws.view.layer() as usize] = view_uniform(&draws.view, &self.sampling);
+        for light in lights(views, self.views_per_light) {
+            let shared = LightUniforms::of(light);
+            // Shaders read what the views of a light have in common from any of them, those into
+            // which nothing casts included.
+            let first_layer = light[0].view.layer();
+            let first_layer = first_layer - first_layer % self.views_per_light;
+            for layer in first_layer..first_layer + self.views_per_light {
+                uniforms[layer as usize] = ShadowViewUniform {
+                    mapping: ShadowMapping::EMPTY,
+                    layer,
+                    ..shared.view(&light[0].view, &self.sampling)
+                };
+            }
+            for draws in light {
+                let layer = draws.view.layer() as usize;
+                uniforms[layer] = shared.view(&draws.view, &self.sampling);
+            }
         }
         for base in layers {
             uniforms[base.layer as usize].limit = base.limit;
@@ -313,17 +326,25 @@ impl ShadowMaps {
 
     fn fill_report(&mut self, layers: &[LayerState], casters: &FrameCasters<'_>) {
         let caster_count = casters.len() as u32;
-        let mut views = self.views.iter().peekable();
+        let lights = lights(&self.views, self.views_per_light);
+        let sampled = lights.flat_map(|light| {
+            let shared = LightUniforms::of(light);
+            light
+                .iter()
+                .map(move |draws| (draws, shared.sampled(&draws.view)))
+        });
+        let mut views = sampled.peekable();
         let reports = layers.iter().map(|base| {
-            match views.next_if(|draws| draws.view.layer() == base.layer) {
+            match views.next_if(|(draws, _)| draws.view.layer() == base.layer) {
                 None if base.deferred => ViewReport {
                     status: ViewStatus::Deferred,
                     ..ViewReport::empty(base.layer, caster_count)
                 },
                 None => ViewReport::empty(base.layer, caster_count),
-                Some(draws) => ViewReport {
+                Some((draws, sampled)) => ViewReport {
                     slice: base.slice,
-                    ..view_report(draws, &self.sampling, casters)
+                    max_peter_panning_world: self.sampling.max_peter_panning_world(&sampled),
+                    ..view_report(draws, casters)
                 },
             }
         });
@@ -345,7 +366,13 @@ impl ShadowMaps {
     }
 }
 
-fn view_report(draws: &ViewDraws, sampling: &Sampling, casters: &FrameCasters<'_>) -> ViewReport {
+/// Returns the views of each light in turn.
+fn lights(views: &[ViewDraws], views_per_light: u32) -> impl Iterator<Item = &[ViewDraws]> {
+    let light = move |draws: &ViewDraws| draws.view.layer() / views_per_light;
+    views.chunk_by(move |a, b| light(a) == light(b))
+}
+
+fn view_report(draws: &ViewDraws, casters: &FrameCasters<'_>) -> ViewReport {
     let triangles: u64 = draws
         .casters
         .iter()
@@ -366,7 +393,7 @@ fn view_report(draws: &ViewDraws, sampling: &Sampling, casters: &FrameCasters<'_
         culled: (casters.len() - draws.casters.len()) as u32,
         texel_size_world: draws.view.texel_size_world(),
         depth_range_world: draws.view.depth_range_world(),
-        max_peter_panning_world: sampling.max_peter_panning_world(&draws.view),
+        max_peter_panning_world: 0.0,
         slice: None,
     }
 }

@@ -21,6 +21,7 @@ mod emit;
 mod filter;
 mod layer_limits;
 mod layout;
+mod light_uniforms;
 mod maps;
 pub mod reference;
 mod report;
@@ -33,11 +34,10 @@ pub use bias::Bias;
 pub use bindings::{ShadowBindings, ShadowBindingsDescriptor};
 pub(crate) use check_sampling::{check_bias, check_fade, check_filter, check_planar_filter};
 pub use filter::Filter;
+pub(crate) use light_uniforms::NO_LIMIT;
 pub use maps::ShadowMaps;
 pub(crate) use maps::{LayerState, MapsFrame, ShadowMapsDescriptor};
 pub use report::{ShadowReport, ViewReport, ViewStatus};
 pub(crate) use sampled_maps::{SampledMaps, Selection};
 pub use uniforms::ShadowViewUniform;
-pub(crate) use uniforms::{
-    NO_LIMIT, Sampling, empty_view_uniform, endless_range, view_uniform, view_uniform_bytes,
-};
+pub(crate) use uniforms::{Sampling, view_uniform_bytes};

@@ -41,19 +41,25 @@ templates! {
     Sampler("sampler.wgsl") { sampler_binding, sampler, sampler_type }
     /// Declares the uniforms and the map of a light.
     Bindings("bindings.wgsl") { views_binding, map_binding, name, array_length, map_type }
-    /// Defines `shadow_view_NAME` of a directional light.
-    Cascades("cascades.wgsl") { name, index, view_count }
-    /// Defines `shadow_view_NAME` of a spot light.
-    OneView("one_view.wgsl") { name, index, first_view, view_count }
-    /// Defines `shadow_view_NAME` of a point light.
+    /// Defines where a position falls in a cascade or the next ones.
+    Cascade("cascade.wgsl") { name, cascade, next }
+    /// Defines where a position falls in the last cascade.
+    LastCascade("last_cascade.wgsl") { name, next }
+    /// Defines where a position falls in the map of a directional light.
+    Cascades("cascades.wgsl") { name, index, cascade }
+    /// Defines where a position falls in the map of a spot light.
+    OneView("one_view.wgsl") { name, index, first_view, any_view, view_count }
+    /// Defines where a position falls in the map of a point light.
     CubeFace("cube_face.wgsl") { name, index, first_view, any_view, view_count }
+    /// Defines `shadow_view_NAME`.
+    View("view.wgsl") { name, index, view_count }
     /// Defines `shadow_NAME` as one lookup in one view.
-    SingleLookup("single_lookup.wgsl") { name, index, view_count, bias, filter, sampler, limit }
+    SingleLookup("single_lookup.wgsl") { name, index, any_view, bias, filter, sampler, limit }
     /// Defines `shadow_NAME` as the weighted mean of a lookup in each of the cascades that blend at a position.
     BlendedLookup("blended_lookup.wgsl") { name, index, view_count, bias, filter, sampler, limit }
     /// Defines `shadow_NAME` as the mean of lookups in many directions from a point light.
     MeanLookup("mean_lookup.wgsl") {
-        name, index, any_view, view_count, pattern, sample_count, sample_count_f32, surface, normal, bias, filter, sampler,
+        name, index, any_view, pattern, sample_count, sample_count_f32, surface, normal, bias, filter, sampler,
         limit
     }
 }

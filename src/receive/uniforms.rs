@@ -1,12 +1,10 @@
 //! Defines the layout of the uniforms that Rust and WGSL share.
 
-use bytemuck::{Pod, Zeroable};
-use glam::Vec3;
-
 use crate::fit::ShadowView;
 use crate::gpu::DepthFormat;
-use crate::receive::bias::lateral_error_texels;
+use crate::receive::bias::{BiasScheme, lateral_error_texels};
 use crate::receive::{Bias, Filter};
+use bytemuck::{Pod, Zeroable};
 
 /// Holds what the WGSL functions read of one view of a light: the bytes of the WGSL struct `ShadowViewUniform` in
 /// `wgsl/view.wgsl`.
@@ -22,64 +20,105 @@ use crate::receive::{Bias, Filter};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct ShadowViewUniform {
-    /// Transforms coordinates relative to the anchor to homogeneous texel x, texel y, ndc depth and w; stored as
-    /// columns.
-    pub(crate) texel_from_anchor: [[f32; 4]; 4],
-    /// Is the row of the inverse transpose that gives a plane's component along texel x.
-    pub(crate) plane_across: [f32; 4],
-    /// Is the row that gives a plane's component along texel y.
-    pub(crate) plane_down: [f32; 4],
-    /// Is the row that gives a plane's component along ndc depth.
-    pub(crate) plane_depth: [f32; 4],
-    /// Is the unit vector toward the light along the view's axis, in render space. w is 1 for a local light, which is
-    /// at the anchor, and 0 for a directional one.
-    pub(crate) light: [f32; 4],
-    /// Is a point of render space inside the view; for a local light, the light's position.
-    pub(crate) anchor: [f32; 3],
+    /// Maps the plane of the map to texels, and distances to depths.
+    pub(crate) mapping: ShadowMapping,
+    /// Is the unit vector of render space to the right on the map.
+    pub(crate) right: [f32; 3],
+    /// Is the ndc depth of the anchor for a directional light; 0 for a local one.
+    pub(crate) depth_offset: f32,
+    /// Is the unit vector of render space downward on the map.
+    pub(crate) down: [f32; 3],
     /// Is the layer of the map.
     pub(crate) layer: u32,
-    /// Bounds the texel coordinates at which a lookup stays inside the map, with kernel and bias included: least x,
-    /// least y, greatest x, greatest y. The least ones exceed the greatest ones where nothing casts into the view.
-    pub(crate) inner: [f32; 4],
+    /// Is the unit vector of render space toward the light along the view's axis.
+    pub(crate) toward: [f32; 3],
+    /// Is 1 for a local light, which is at the anchor, and 0 for a directional one.
+    pub(crate) is_local: f32,
+    /// Is a point of render space: the position of a local light; for a directional one a point in
+    /// its first view.
+    pub(crate) anchor: [f32; 3],
+    /// Is the position of the map's first texel in a texel grid that is fixed in the world, modulo
+    /// 65536: x in the low 16 bits, y in the high 16 bits.
+    pub(crate) grid: u32,
+    /// Is the distance from the middle of the map, in texels along x and y, within which a lookup
+    /// stays inside the map, with kernel and bias included.
+    pub(crate) inner: [f32; 2],
+    /// Is the middle of the map in texel coordinates.
+    pub(crate) middle: [f32; 2],
     /// Is the number of texels per side.
     pub(crate) map_size: f32,
+    /// Is the reciprocal of the number of texels per side.
+    pub(crate) uv_per_texel: f32,
     /// Is the absolute rounding error of a comparison, in ndc depth.
     pub(crate) depth_error: f32,
-    /// Is the rounding error of a comparison in relation to the depth.
-    pub(crate) depth_error_relative: f32,
     /// Is the error of a lookup's position across the map, in texels.
     pub(crate) lateral_error: f32,
     /// Is the offset along the normal, in texels times |nx| + |ny| of the normal in light space.
     pub(crate) offset_texels: f32,
-    /// Is the world distance by which a receiver's plane is moved for the rounding of render coordinates: along the
-    /// normal, or toward a local light. For a local light, 2^-22 of the receiver's distance from it is added, along the
-    /// axis on which that is largest.
+    /// Is the world distance by which a receiver's plane is moved toward a local light for the
+    /// rounding of render coordinates. The shader adds 2^-22 of the receiver's distance from the
+    /// light, along the axis on which that is largest. It is 0 for a directional light.
     pub(crate) offset_world: f32,
     /// Is the constant of a manual bias in world units; 0 for the other biases.
     pub(crate) manual_constant: f32,
     /// Is the slope of a manual bias in world units; 0 for the other biases.
     pub(crate) manual_slope: f32,
-    /// Is the edge sharpness of the filter; 1 leaves its ramp as it is.
-    pub(crate) sharpness: f32,
-    /// Is the world distance from the anchor beyond which a local light does not reach; at most 1e18, the
-    /// value for a directional light.
+    /// Turns the weighted sum of a kernel's comparisons into visibility: factor and summand.
+    pub(crate) ramp: [f32; 2],
+    /// Is the world distance from the anchor beyond which a local light does not reach; at most
+    /// 1e18, the value for a directional light.
     pub(crate) range: f32,
-    /// Is the cosine of the half-angle of the cone around the view's axis; -2 if there is no cone.
-    pub(crate) cone_cosine: f32,
+    /// Is the square of the range.
+    pub(crate) range_squared: f32,
+    /// Is the square of the tangent of the half-angle of the cone around the view's axis; 3e38 if
+    /// there is no cone.
+    pub(crate) cone_tangent_squared: f32,
     /// Is the radius in world units of the direction-space filters; 0 for the other filters.
     pub(crate) sample_radius: f32,
-    /// Is the position of the first camera in render space. w is 1, or 0 where the frame has no camera.
+    /// Is the tangent of half the angular diameter of a directional light, or the radius of a local
+    /// one in world units; 0 for filters without a light size.
+    pub(crate) light_spread: f32,
+    /// Is the reciprocal of the distance from the border, in texels, within which a cascade blends
+    /// into the next one; 1e30 without blending.
+    pub(crate) blend_scale: f32,
+    /// Is the position of the first camera in render space. w is 1, or 0 where the frame has no
+    /// camera.
     pub(crate) camera: [f32; 4],
-    /// Is the radius of a penumbra in texels along x and y, per difference of ndc depth between occluder and receiver;
-    /// 0 for filters without a light size.
-    pub(crate) penumbra: [f32; 2],
-    /// Is the distance from the border, in texels, within which a cascade blends into the next one; 0 without blending.
-    pub(crate) fade_texels: f32,
-    /// Is the position of the map's first texel in a texel grid that is fixed in the world, modulo 65536: x in the low
-    /// 16 bits, y in the high 16 bits.
-    pub(crate) grid: u32,
-    /// Determines where shadows end: a plane for a directional light, and coefficients of the distance for a local one.
+    /// Determines where shadows end: a plane for a directional light, and coefficients of the
+    /// distance for a local one.
     pub(crate) limit: [f32; 4],
+}
+
+/// Maps the plane of a light's map to texels, and distances to depths: the bytes of the WGSL struct
+/// `ShadowMapping`. The plane's coordinates are world units in light space for a directional light,
+/// and tangents of angles for a local one.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct ShadowMapping {
+    /// Is the number of texels per unit of the plane.
+    pub texel_scale: [f32; 2],
+    /// Is the position of the anchor, in texels from the middle of the map.
+    pub texel_offset: [f32; 2],
+    /// Is the size of a texel in units of the plane.
+    pub texel_size: [f32; 2],
+    /// Is the ndc depth of a world unit for a directional light, and the world distance of the near
+    /// plane for a local one.
+    pub depth_scale: f32,
+    /// Is the world distance along the normal by which a receiver is moved for the rounding of
+    /// render coordinates for a directional light, and the rounding error of a comparison in
+    /// relation to the depth for a local one.
+    pub rounding: f32,
+}
+
+impl ShadowMapping {
+    /// Is the mapping of a view into which nothing casts: it covers no position.
+    pub const EMPTY: Self = Self {
+        texel_scale: [0.0; 2],
+        texel_offset: [1e30; 2],
+        texel_size: [0.0; 2],
+        depth_scale: 0.0,
+        rounding: 0.0,
+    };
 }
 
 impl ShadowViewUniform {
@@ -90,12 +129,6 @@ impl ShadowViewUniform {
 /// Returns the size in bytes of the uniforms of `views` views.
 pub(crate) fn view_uniform_bytes(views: u64) -> u64 {
     views * ShadowViewUniform::SIZE_BYTES
-}
-
-/// Returns a range for the uniforms. An infinite one becomes a distance that no position exceeds and whose square is
-/// finite.
-pub(crate) fn endless_range(range_world: f64) -> f32 {
-    range_world.min(1e18) as f32
 }
 
 /// Holds the settings with which the maps of a light are sampled.
@@ -111,7 +144,7 @@ pub(crate) struct Sampling {
 }
 
 /// Bounds the distance in texels by which rounding may move a lookup: the error `6uN` is 1/350 of a texel at N = 8192.
-const ROUNDING_TEXELS: f64 = 1.0 / 64.0;
+pub(crate) const ROUNDING_TEXELS: f64 = 1.0 / 64.0;
 
 impl Sampling {
     /// Returns the settings for maps of 32 bits without blending.
@@ -140,6 +173,16 @@ impl Sampling {
         reach * std::f64::consts::SQRT_2
     }
 
+    /// Returns the offset along the normal that a lookup adds, in texels: for a receiver that has one
+    /// reference depth, that of the bias and the lateral error. A tangent plane's slack is depth.
+    pub fn lookup_offset_texels(&self, view: &ShadowView) -> f64 {
+        let offset = self.bias.offset_texels(self.filter);
+        match self.bias.scheme(self.filter) {
+            BiasScheme::NormalOffset => offset + lateral_error_texels(view),
+            BiasScheme::Plane | BiasScheme::Manual => offset,
+        }
+    }
+
     /// Returns the number of texels by which a lookup may deviate from the position of its receiver: the filter's
     /// reach, the distance across the map by which an offset along the normal can move it, and rounding.
     pub fn border_texels(&self) -> f64 {
@@ -153,114 +196,62 @@ impl Sampling {
     }
 }
 
-/// Is the uniform's `limit` for shadows that end where the maps end: their weight is one everywhere.
-pub(crate) const NO_LIMIT: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
-
-/// Returns the uniform of a view into which nothing casts: no receiver is inside it. The anchor of a light beyond the
-/// range of f32 is clamped to that range.
-pub(crate) fn empty_view_uniform(layer: u32, anchor_render: Vec3) -> ShadowViewUniform {
-    ShadowViewUniform {
-        inner: [1.0, 1.0, 0.0, 0.0],
-        layer,
-        anchor: anchor_render.clamp(Vec3::MIN, Vec3::MAX).to_array(),
-        map_size: 1.0,
-        limit: NO_LIMIT,
-        ..ShadowViewUniform::zeroed()
-    }
-}
-
-/// Returns the uniform of `view`.
-pub(crate) fn view_uniform(view: &ShadowView, sampling: &Sampling) -> ShadowViewUniform {
-    let texel_from_anchor = view.texel_from_anchor();
-    // A plane is a row vector and is transformed by the inverse: plane_texel = plane_render *
-    // inverse(texel_from_anchor). Its component along texel x is the product with the inverse's first column.
-    let anchor_from_texel = texel_from_anchor.inverse();
-    let size = f64::from(view.map_size());
-    // Only the middle of a map that is smaller than its borders remains.
-    let border = (sampling.border_texels() - ROUNDING_TEXELS).min(size * 0.5);
-    let inner = [border, border, size - border, size - border].map(|texel| texel as f32);
-    let (depth_error, depth_error_relative) = view.depth_error_ndc();
-    let (manual_constant, manual_slope) = sampling.bias.manual();
-    ShadowViewUniform {
-        texel_from_anchor: texel_from_anchor.as_mat4().to_cols_array_2d(),
-        plane_across: anchor_from_texel.col(0).as_vec4().to_array(),
-        plane_down: anchor_from_texel.col(1).as_vec4().to_array(),
-        plane_depth: anchor_from_texel.col(2).as_vec4().to_array(),
-        light: view.light_axis().as_vec4().to_array(),
-        anchor: view.anchor_render().to_array(),
-        layer: view.layer(),
-        inner,
-        map_size: view.map_size() as f32,
-        depth_error: (depth_error + sampling.depth_format.step_ndc()) as f32,
-        depth_error_relative: depth_error_relative as f32,
-        lateral_error: lateral_error_texels(view) as f32,
-        offset_texels: sampling.bias.offset_texels(sampling.filter) as f32,
-        offset_world: view.position_error_world() as f32,
-        manual_constant,
-        manual_slope,
-        sharpness: sampling.filter.sharpness(),
-        range: endless_range(view.range_world()),
-        cone_cosine: view.cone_cosine() as f32,
-        sample_radius: sampling.filter.radius_world(),
-        camera: [0.0; 4],
-        penumbra: view
-            .penumbra_texels(f64::from(sampling.filter.light_size()))
-            .as_vec2()
-            .to_array(),
-        fade_texels: sampling.blend * view.map_size() as f32,
-        grid: view.world_grid(),
-        limit: NO_LIMIT,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;
     use std::mem::offset_of;
 
-    use super::{ShadowViewUniform, Zeroable};
+    use super::{ShadowMapping, ShadowViewUniform, Zeroable};
     use crate::shader;
 
-    /// Checks that every member has the offset, the size and the name in Rust that it has in WGSL. The structs have the
-    /// same size, so that arrays of them have the same stride.
+    /// Returns the offset and the size of the named members of a Rust struct.
+    macro_rules! members {
+        ($struct:ty: $($member:ident)*) => {{
+            let value = <$struct>::zeroed();
+            BTreeMap::from([$((
+                stringify!($member),
+                (offset_of!($struct, $member), size_of_val(&value.$member)),
+            )),*])
+        }};
+    }
+
+    /// Checks that every member has the offset, the size and the name in Rust that it has in WGSL.
+    /// The structs have the same size, so that arrays of them have the same stride.
     #[test]
     fn rust_and_wgsl_have_one_layout() {
-        macro_rules! members {
-            ($($member:ident)*) => {{
-                let value = ShadowViewUniform::zeroed();
-                BTreeMap::from([$((
-                    stringify!($member),
-                    (offset_of!(ShadowViewUniform, $member), size_of_val(&value.$member)),
-                )),*])
-            }};
+        let views = members!(
+            ShadowViewUniform: mapping right depth_offset down layer toward is_local anchor grid
+            inner middle map_size uv_per_texel depth_error lateral_error offset_texels offset_world
+            manual_constant manual_slope ramp range range_squared cone_tangent_squared sample_radius
+            light_spread blend_scale camera limit
+        );
+        let mappings = members!(
+            ShadowMapping: texel_scale texel_offset texel_size depth_scale rounding
+        );
+        for (name, in_rust, size) in [
+            ("ShadowViewUniform", views, size_of::<ShadowViewUniform>()),
+            ("ShadowMapping", mappings, size_of::<ShadowMapping>()),
+        ] {
+            let source = shader::compose(&["view"]).expect("a module of the table");
+            let module = naga::front::wgsl::parse_str(&source).expect("valid WGSL");
+            let mut types = module.types.iter().map(|(_, ty)| ty);
+            let found = types.find(|ty| ty.name.as_deref() == Some(name));
+            let Some(naga::TypeInner::Struct { members, span }) = found.map(|ty| &ty.inner) else {
+                panic!("no struct {name}");
+            };
+            let in_wgsl: BTreeMap<_, _> = members
+                .iter()
+                .map(|member| {
+                    let size = module.types[member.ty].inner.size(module.to_ctx());
+                    let name = member.name.as_deref().expect("a named member");
+                    (name, (member.offset as usize, size as usize))
+                })
+                .collect();
+            assert_eq!(in_rust, in_wgsl);
+            assert_eq!(*span as usize, size);
+            let bytes: usize = in_rust.values().map(|(_, size)| size).sum();
+            assert_eq!(bytes, size, "padding would be uploaded uninitialised");
+            assert_eq!(span % 16, 0, "the stride of an array in a uniform buffer");
         }
-        let in_rust = members!(
-            texel_from_anchor plane_across plane_down plane_depth light anchor layer inner map_size depth_error
-            depth_error_relative lateral_error offset_texels offset_world manual_constant manual_slope sharpness range
-            cone_cosine sample_radius camera penumbra fade_texels grid limit
-        );
-        let source = shader::compose(&["view"]).expect("a module of the table");
-        let module = naga::front::wgsl::parse_str(&source).expect("valid WGSL");
-        let mut types = module.types.iter().map(|(_, ty)| ty);
-        let uniform = types.find(|ty| ty.name.as_deref() == Some("ShadowViewUniform"));
-        let Some(naga::TypeInner::Struct { members, span }) = uniform.map(|ty| &ty.inner) else {
-            panic!("no struct ShadowViewUniform");
-        };
-        let in_wgsl: BTreeMap<_, _> = members
-            .iter()
-            .map(|member| {
-                let size = module.types[member.ty].inner.size(module.to_ctx());
-                let name = member.name.as_deref().expect("a named member");
-                (name, (member.offset as usize, size as usize))
-            })
-            .collect();
-        assert_eq!(in_rust, in_wgsl);
-        assert_eq!(u64::from(*span), ShadowViewUniform::SIZE_BYTES);
-        let bytes: usize = in_rust.values().map(|(_, size)| size).sum();
-        assert_eq!(
-            bytes, *span as usize,
-            "padding would be uploaded uninitialised"
-        );
-        assert_eq!(span % 16, 0, "the stride of an array in a uniform buffer");
     }
 }

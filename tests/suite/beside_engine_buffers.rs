@@ -122,14 +122,14 @@ fn draw_own() -> usize {
     let stage = stage(gpu);
     let [sun, _, _, spot, ..] = Kind::ALL;
     let mut drawn = 0;
-    for kind in [sun, spot] {
+    for (kind, view) in [(sun, "directional"), (spot, "local")] {
         for (bias, scheme) in BIASES {
             let light = kind.lit(gpu, &stage, Filter::Nearest, bias);
             let mut wanted = None;
             for before in BEFORE_OWN_VIEW {
                 let name = format!("{kind:?} {bias:?} behind {before}");
                 println!("{name}");
-                let seen = own_picture(gpu, &*light, scheme, before);
+                let seen = own_picture(gpu, &*light, scheme, view, before);
                 let wanted = wanted.get_or_insert_with(|| seen.clone());
                 assert!(seen == *wanted, "{name}: another picture");
                 drawn += 1;
@@ -140,7 +140,7 @@ fn draw_own() -> usize {
     drawn
 }
 
-fn own_picture(gpu: &Gpu, light: &dyn Light, scheme: &str, before: u32) -> RgbaImage {
+fn own_picture(gpu: &Gpu, light: &dyn Light, scheme: &str, kind: &str, before: u32) -> RgbaImage {
     let device = &gpu.device;
     let bias = format!("bias_{scheme}");
     let modules = shader::compose(&[&bias, "filter_nearest"]).expect("modules of the table");
@@ -157,7 +157,7 @@ fn own_picture(gpu: &Gpu, light: &dyn Light, scheme: &str, before: u32) -> RgbaI
 @group(1) @binding(1) var own_sampler: sampler;
 
 fn own_light(position: vec3<f32>, normal: vec3<f32>) -> f32 {{
-    let receiver = shadow_receiver_{scheme}(own_view, position, normal);
+    let receiver = shadow_receiver_{scheme}_{kind}(own_view, position, normal);
     if !receiver.inside {{
         return 1.0;
     }}

@@ -45,15 +45,20 @@ fn light_names_that_are_no_identifiers() {
         "sun-light",
         "sön",
         // These are names of functions that the library has already.
-        "plane",
+        "receiver",
         "geometric_normal",
         "gather",
-        "sharpen",
+        "kernel",
         "filter_nearest",
-        // These are functions of a view, whose names begin as `shadow_view_NAME` does.
+        // This is a function of a view, whose name begins as `shadow_view_NAME` does.
         "holds",
-        "covers",
-        "weight",
+        // These are names of functions and variables of a light called `sun`.
+        "view_sun",
+        "views_sun",
+        "map_sun",
+        "place_of_sun",
+        "axes_of_sun",
+        "cascade_of_sun",
     ];
     for name in names {
         let error = bind(&[name]).expect_err(name);
@@ -66,7 +71,7 @@ fn light_names_that_are_no_identifiers() {
         );
         assert!(text.ends_with(&format!("got {name:?}")), "{text}");
     }
-    for name in ["sun", "s", "sun_2_high", "s9n"] {
+    for name in ["sun", "s", "sun_2_high", "s9n", "directional", "local"] {
         assert_eq!(bind(&[name]), Ok(()), "{name}");
     }
     let error = bind(&["sun", "moon", "sun"]).expect_err("twice");

@@ -172,7 +172,7 @@ fn only_cascades_that_blend_have_weights() {
             },
         )
         .expect("valid bindings");
-        let used = bindings.wgsl().matches("shadow_view_weight(").count() > 1;
+        let used = bindings.wgsl().matches("shadow_blend_weight(").count() > 1;
         assert_eq!(used, weighted, "{cascades} cascades, blend {blend}");
     }
 }

@@ -1,7 +1,7 @@
 //! Tests that the depths that a map contains of a plane are as near to the plane's own as the uniforms state: the
 //! errors that the bias allows for are those that the device makes.
 
-use glam::{DMat4, DVec2, DVec3, Mat4, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 use wgpu_shadows::{
     Aabb, DepthFormat, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
 };
@@ -13,7 +13,7 @@ use crate::support::random::Random;
 use crate::support::readback;
 use crate::support::scene::{Mesh, Scene};
 use crate::support::table;
-use crate::support::view_member::member;
+use crate::support::view_member::{member, texel_from_anchor};
 
 const MAP_SIZE: u32 = 256;
 
@@ -61,8 +61,7 @@ impl Sheet {
         };
         record(gpu, shadow, &frame);
         let view = shadow.maps().view_uniforms()[0];
-        let texel_from_anchor: DMat4 =
-            Mat4::from_cols_array_2d(&member(&view, "texel_from_anchor")).as_dmat4();
+        let texel_from_anchor = texel_from_anchor(&view);
         let anchor = Vec3::from_array(member(&view, "anchor")).as_dvec3();
         let corners = self.scene.triangles[0].0;
         let [a, b, c] = corners.map(|at| texel_from_anchor.transform_point3(at - anchor));

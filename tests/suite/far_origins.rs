@@ -56,17 +56,11 @@ fn assert_finite<'a>(
         assert!(view.anchor_render().is_finite(), "{what}: {view:?}");
     }
     for uniform in uniforms {
-        let names = [
-            "plane_across",
-            "plane_down",
-            "plane_depth",
-            "light",
-            "inner",
-        ];
-        let rows = names.map(|name| member::<[f32; 4]>(uniform, name));
-        let columns: [[f32; 4]; 4] = member(uniform, "texel_from_anchor");
-        let anchor: [f32; 3] = member(uniform, "anchor");
-        let mut numbers = rows.iter().chain(&columns).flatten().chain(&anchor);
+        let mapping: [f32; 8] = member(uniform, "mapping");
+        let vectors = ["right", "down", "toward", "anchor"];
+        let vectors = vectors.map(|name| member::<[f32; 3]>(uniform, name));
+        let inner: [f32; 2] = member(uniform, "inner");
+        let mut numbers = vectors.iter().flatten().chain(&mapping).chain(&inner);
         assert!(
             numbers.all(|number| number.is_finite()),
             "{what}: {uniform:?}"

@@ -6,7 +6,7 @@
 //! sum. Receivers for which they differ are *undecided*: the test proves little about them, and limits their share.
 
 use bytemuck::Zeroable;
-use glam::{DVec2, DVec3, DVec4, Mat4, Vec3, Vec4};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 use wgpu_shadows::reference::{self, DepthLayer, Receiver};
 use wgpu_shadows::{
     Aabb, Bias, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter,
@@ -20,7 +20,7 @@ use crate::support::random::Random;
 use crate::support::readback;
 use crate::support::rounding::{Band, U, band};
 use crate::support::scene::{Mesh, Scene};
-use crate::support::view_member::member;
+use crate::support::view_member::{member, texel_and_depth};
 
 pub(super) const BIASES: [Bias; 3] = [
     Bias::Auto,
@@ -149,14 +149,10 @@ pub(super) fn place(point: &Point) -> (DVec3, DVec3) {
 
 /// Returns whether a position is so close to a border of what the map covers that rounding decides on which side it is.
 pub(super) fn at_border(view: &ShadowViewUniform, position: DVec3, band: &Band) -> bool {
-    let relative = position - Vec3::from_array(member(view, "anchor")).as_dvec3();
-    let texel_from_anchor = Mat4::from_cols_array_2d(&member(view, "texel_from_anchor")).as_dmat4();
-    let place = texel_from_anchor * relative.extend(1.0);
-    let texel = place.truncate().truncate() / place.w;
-    let inner: DVec4 = Vec4::from_array(member(view, "inner")).as_dvec4();
-    let low = (texel - DVec2::new(inner.x, inner.y)).abs();
-    let high = (texel - DVec2::new(inner.z, inner.w)).abs();
-    low.cmple(band.texel).any() || high.cmple(band.texel).any() || place.z.abs() <= band.depth
+    let (texel, depth) = texel_and_depth(view, position);
+    let pair = |name| Vec2::from_array(member(view, name)).as_dvec2();
+    let from_border = (texel - pair("middle")).abs() - pair("inner");
+    from_border.abs().cmple(band.texel).any() || depth.abs() <= band.depth
 }
 
 /// Returns the least and the greatest visibility over the rounding band.

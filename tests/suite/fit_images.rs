@@ -83,7 +83,7 @@ fn texel_error(placed: &Placed, place: DVec3) -> f64 {
         let band = band(&view, FILTER, Bias::Auto, position, DVec3::Y, &reference);
         let rounding = band.expect("a floor that is not edge on").texel;
         let size = placed.report.views[layer].texel_size_world.min_element();
-        let offset: f32 = member(&view, "offset_world");
+        let offset: f32 = member(&view, "mapping.rounding");
         rounding.element_sum() + std::f64::consts::SQRT_2 * f64::from(offset / size)
     })
 }

@@ -56,7 +56,12 @@ fn names_of_modules_are_there() {
         ("view", "texture_depth_2d_array"),
         ("texels_by_samples", "texture_2d_array<f32>"),
     ] {
-        for bias in ["plane", "normal_offset", "manual"] {
+        let kinds = ["directional", "local"];
+        let biases = ["plane", "normal_offset", "manual"];
+        for (bias, kind) in biases
+            .iter()
+            .flat_map(|bias| kinds.map(|kind| (bias, kind)))
+        {
             for filter in filters {
                 let (map, sampler) = match filter {
                     "hardware" => ("texture_depth_2d_array", "sampler_comparison"),
@@ -70,7 +75,7 @@ fn names_of_modules_are_there() {
 @group(1) @binding(1) var map_sampler: {sampler};
 @group(1) @binding(2) var<uniform> views: array<ShadowViewUniform, 6>;
 fn lit(position: vec3<f32>, normal: vec3<f32>) -> f32 {{
-    let receiver: ShadowReceiver = shadow_receiver_{bias}(views[1], position, normal);
+    let receiver: ShadowReceiver = shadow_receiver_{bias}_{kind}(views[1], position, normal);
     let holds: bool = shadow_view_holds(views[1], position);
     let visibility: f32 = shadow_filter_{filter}(map, map_sampler, receiver);
     return select(views[1].anchor.x, visibility, receiver.inside && holds);

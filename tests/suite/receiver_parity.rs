@@ -25,9 +25,12 @@ fn raw(receiver: ShadowReceiver) -> array<vec4<f32>, 2> {
 
 fn module_of(bias: Bias) -> (&'static str, &'static str) {
     match bias {
-        Bias::Auto => ("bias_plane", "shadow_receiver_plane"),
-        Bias::NormalOffset => ("bias_normal_offset", "shadow_receiver_normal_offset"),
-        _ => ("bias_manual", "shadow_receiver_manual"),
+        Bias::Auto => ("bias_plane", "shadow_receiver_plane_directional"),
+        Bias::NormalOffset => (
+            "bias_normal_offset",
+            "shadow_receiver_normal_offset_directional",
+        ),
+        _ => ("bias_manual", "shadow_receiver_manual_directional"),
     }
 }
 

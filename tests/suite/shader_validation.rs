@@ -128,7 +128,7 @@ fn the_table_is_the_directory() {
 }
 
 /// With the declarations of their holes, the templates of a light's functions are valid WGSL as they stand: each that
-/// selects a view with each that looks the visibility up. All names that they declare begin with the library's prefix,
+/// finds a place with each that looks the visibility up. All names that they declare begin with the library's prefix,
 /// so that no light declares a name of an engine's.
 #[test]
 fn templates_validate_as_they_stand() {
@@ -148,7 +148,7 @@ fn templates_validate_as_they_stand() {
         {
             failures.push(format!("{name}: {foreign} is not the library's"));
         }
-        let kind = if declared.contains("shadow_view_NAME") {
+        let kind = if declared.contains("shadow_place_of_NAME") {
             &mut selections
         } else if declared.contains("shadow_NAME") {
             &mut lookups
@@ -158,7 +158,7 @@ fn templates_validate_as_they_stand() {
         kind.push((name, text));
     }
     assert!(!selections.is_empty() && !lookups.is_empty() && !shared.is_empty());
-    let modules = ["view", "cube_face", "filter_direction"];
+    let modules = ["view", "place", "cube_face", "filter_direction"];
     let modules = shader::compose(&modules).expect("modules of the table");
     for (selection, selecting) in &selections {
         for (lookup, looking_up) in &lookups {

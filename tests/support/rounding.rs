@@ -5,11 +5,11 @@
 //! up: 6 where a row of a matrix is multiplied by a vector (four products, and one rounding each for the vector's own
 //! entries and for the division by w, which is one).
 
-use glam::{DVec2, DVec3, Mat4, Vec3, Vec4};
+use glam::{DVec2, DVec3, Vec3};
 use wgpu_shadows::reference::Receiver;
 use wgpu_shadows::{Bias, Filter, ShadowViewUniform};
 
-use crate::support::view_member::member;
+use crate::support::view_member::{member, plane_rows, texel_from_anchor};
 
 /// Is the unit roundoff of f32.
 pub const U: f64 = 1.0 / (1u64 << 24) as f64;
@@ -34,8 +34,7 @@ pub fn band(
 ) -> Option<Band> {
     let number = |name| f64::from(member::<f32>(view, name));
     let relative = position - Vec3::from_array(member(view, "anchor")).as_dvec3();
-    let rows = ["plane_across", "plane_down", "plane_depth"];
-    let rows = rows.map(|row| Vec4::from_array(member(view, row)).as_dvec4());
+    let rows = plane_rows(view);
     let homogeneous = normal.extend(-normal.dot(relative));
     let magnitude = normal.abs().extend(2.0 * normal.abs().dot(relative.abs()));
     let plane = DVec3::from_array(rows.map(|row| row.dot(homogeneous)));
@@ -44,8 +43,8 @@ pub fn band(
     let (moved, moved_error) = match bias {
         // This is a product of three factors, one of them a sum of two plane components.
         Bias::Auto | Bias::NormalOffset => {
-            let texels = number("offset_texels") + number("lateral_error");
-            let moved = texels * (plane.x.abs() + plane.y.abs());
+            let texels = number("offset_texels");
+            let moved = texels * (plane.x.abs() + plane.y.abs()) + number("mapping.rounding");
             (
                 moved,
                 texels * (plane_error.x + plane_error.y) + 6.0 * U * moved,
@@ -59,9 +58,9 @@ pub fn band(
     };
     let reach = relative.abs() + DVec3::splat(moved);
     let position_error = 2.0 * U * reach + DVec3::splat(moved_error);
-    let matrix = Mat4::from_cols_array_2d(&member(view, "texel_from_anchor"));
+    let matrix = texel_from_anchor(view);
     let place_error = |row: usize| {
-        let row = matrix.row(row).as_dvec4().abs();
+        let row = matrix.row(row).abs();
         6.0 * U * row.dot(reach.extend(1.0)) + row.truncate().dot(position_error)
     };
     let texel = DVec2::new(place_error(0), place_error(1));

@@ -1,6 +1,6 @@
 // Draws colours that tell which view covers each pixel. The pass multiplies the engine's image by them.
 //
-// CPU counterpart: src/debug/cascade_tint.rs. Requires: view, fullscreen.
+// CPU counterpart: src/debug/cascade_tint.rs. Requires: view, place, fullscreen.
 
 struct ShadowTint {
     // Transforms the clip space of the image's camera to render space.

@@ -14,38 +14,33 @@ struct ShadowDebugView {
 @group(0) @binding(2) var shadow_debug_map: texture_2d_array<f32>;
 @group(0) @binding(3) var shadow_debug_sampler: sampler;
 
-// Returns the distance from the light along the ray through `texel`, as a fraction of the light's reach.
-fn shadow_debug_grey(view: ShadowViewUniform, texel: vec2<f32>, ray: vec3<f32>) -> f32 {
+// Returns the distance from the light along the ray through `texel` (from the middle of the map), as a fraction of the
+// light's reach. `tangents` is the ray's position in the plane of the map of a local light.
+fn shadow_debug_grey(view: ShadowViewUniform, texel: vec2<f32>, tangents: vec2<f32>) -> f32 {
     let last = view.map_size - 1.0;
-    let inside = clamp(floor(texel), vec2<f32>(0.0), vec2<f32>(last));
-    let center = (inside + 0.5) / view.map_size;
+    let inside = clamp(floor(texel + view.middle), vec2<f32>(0.0), vec2<f32>(last));
+    let center = (inside + 0.5) * view.uv_per_texel;
     // This is a sample, since GLSL ES 3.00 has no gather, and since loads fail as `texels_by_samples` describes.
     let depth = textureSampleLevel(shadow_debug_map, shadow_debug_sampler, center, view.layer, 0.0).x;
     if shadow_debug.local.x == 0u {
         return 1.0 - depth;
     }
-    // homogeneous.z is the near distance, and depth = near / distance along the axis.
-    let homogeneous = view.texel_from_anchor * vec4<f32>(ray, 1.0);
-    let along_axis = homogeneous.z / max(depth, 1e-30);
-    return clamp(along_axis * length(ray) / (homogeneous.w * view.range), 0.0, 1.0);
+    // The depth is the near distance over the distance along the axis.
+    let along_axis = view.mapping.depth_scale / max(depth, 1e-30);
+    return clamp(along_axis * length(vec3<f32>(tangents, 1.0)) / view.range, 0.0, 1.0);
 }
 
 // Draws the first view of the list as it is stored in its layer.
 @fragment
 fn shadow_debug_layer(vertex: ShadowFullscreenVertex) -> @location(0) vec4<f32> {
     let view = shadow_debug_views[0];
-    if view.inner.x > view.inner.z {
+    let texel = vertex.uv * view.map_size - view.middle;
+    // A view into which nothing casts has texels without a size.
+    if view.mapping.texel_size.x <= 0.0 {
         return vec4<f32>(1.0);
     }
-    let texel = vertex.uv * view.map_size;
-    // The planes of constant texel x and of constant texel y through the anchor intersect in the ray through the texel.
-    let columns = view.texel_from_anchor;
-    let rows = transpose(columns);
-    let across = rows[0].xyz - texel.x * rows[3].xyz;
-    let down = rows[1].xyz - texel.y * rows[3].xyz;
-    let ray = cross(across, down);
-    let forward = ray * select(-1.0, 1.0, dot(rows[3].xyz, ray) >= 0.0);
-    return vec4<f32>(vec3<f32>(shadow_debug_grey(view, texel, forward)), 1.0);
+    let tangents = (texel - view.mapping.texel_offset) * view.mapping.texel_size;
+    return vec4<f32>(vec3<f32>(shadow_debug_grey(view, texel, tangents)), 1.0);
 }
 
 // Draws the six faces of a cube, unfolded around the one that looks along -z: +y above it, -x to the left, +x to the
@@ -69,12 +64,13 @@ fn shadow_debug_cross(vertex: ShadowFullscreenVertex) -> @location(0) vec4<f32> 
     } else {
         return vec4<f32>(vec3<f32>(0.5), 1.0);
     }
-    let view = shadow_debug_views[shadow_cube_face(ray)];
-    let homogeneous = view.texel_from_anchor * vec4<f32>(ray, 1.0);
-    let texel = homogeneous.xy / homogeneous.w;
-    let covered = all(texel >= view.inner.xy) && all(texel <= view.inner.zw);
-    if !covered {
+    let face = shadow_face(ray);
+    let view = shadow_debug_views[face.index];
+    let light = shadow_along_face(face, ray);
+    let tangents = light.xy / -light.z;
+    let texel = tangents * view.mapping.texel_scale + view.mapping.texel_offset;
+    if !all(abs(texel) < view.inner) {
         return vec4<f32>(1.0);
     }
-    return vec4<f32>(vec3<f32>(shadow_debug_grey(view, texel, ray)), 1.0);
+    return vec4<f32>(vec3<f32>(shadow_debug_grey(view, texel, tangents)), 1.0);
 }

@@ -4,18 +4,25 @@
 //
 // It is the weighted mean of all cascades that cover the position, from near to far. Each cascade takes its weight from
 // the share that the cascades before it have left, and takes less of it toward its border. The mean is therefore
-// continuous across every border.
+// continuous across every border. Only next to a border are there two lookups, so they are a loop: written out, each
+// cascade would add the instructions of another lookup.
 fn shadow_NAME(INDEX: u32, position: vec3<f32>, normal: vec3<f32>) -> f32 {
+    let first = shadow_place_of_NAME(INDEX, position);
+    if !first.inside {
+        return 1.0;
+    }
+    let along = shadow_axes_of_NAME(INDEX, position, normal);
     var lit = 0.0;
     var share = 0.0;
-    for (var view = shadow_view_NAME(INDEX, position); view < VIEW_COUNT && share < 1.0; view++) {
-        if shadow_view_covers(shadow_views_NAME[view], position) {
-            let weight = (1.0 - share) * shadow_view_weight(shadow_views_NAME[view], position);
-            let receiver = shadow_receiver_BIAS(shadow_views_NAME[view], position, normal);
+    for (var view = first.layer; view < VIEW_COUNT && share < 1.0; view++) {
+        let place = shadow_directional_place(shadow_views_NAME[view], view, first.light);
+        if place.inside {
+            let weight = (1.0 - share) * shadow_blend_weight(shadow_views_NAME[0], place);
+            let mapping = shadow_views_NAME[view].mapping;
+            let receiver = shadow_BIAS(shadow_views_NAME[0], mapping, place, along);
             lit += weight * shadow_FILTER(shadow_map_NAME, SAMPLER, receiver);
             share += weight;
         }
     }
-    let visibility = select(1.0, lit / share, share > 0.0);
-    return shadow_LIMIT(shadow_views_NAME[0], position, visibility);
+    return shadow_LIMIT(shadow_views_NAME[0], position, lit / share);
 }

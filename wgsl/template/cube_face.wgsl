@@ -1,10 +1,18 @@
 
-// Returns the face that a position in render space lies on as seen from the light, which is also its layer. Where that
-// face does not cover the position, it returns the number of all views.
-fn shadow_view_NAME(INDEX: u32, position: vec3<f32>) -> u32 {
-    let view = FIRST_VIEW + shadow_cube_face(position - shadow_views_NAME[ANY_VIEW].anchor);
-    if view < VIEW_COUNT && shadow_view_holds(shadow_views_NAME[view], position) {
-        return view;
-    }
-    return VIEW_COUNT;
+// Returns where a position of render space falls on the face of the cube on which it lies as seen from the light.
+fn shadow_place_of_NAME(INDEX: u32, position: vec3<f32>) -> ShadowPlace {
+    let from_light = position - shadow_views_NAME[ANY_VIEW].anchor;
+    let face = shadow_face(from_light);
+    let view = FIRST_VIEW + face.index;
+    let mapping = shadow_views_NAME[view].mapping;
+    let grid = shadow_views_NAME[view].grid;
+    let light = shadow_along_face(face, from_light);
+    var place = shadow_local_place(shadow_views_NAME[ANY_VIEW], mapping, view, grid, light);
+    place.inside = place.inside & (view < VIEW_COUNT);
+    return place;
+}
+
+// Returns a vector of render space along the axes of the face on which a position lies.
+fn shadow_axes_of_NAME(INDEX: u32, position: vec3<f32>, vector: vec3<f32>) -> vec3<f32> {
+    return shadow_along_face(shadow_face(position - shadow_views_NAME[ANY_VIEW].anchor), vector);
 }

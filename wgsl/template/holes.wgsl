@@ -5,7 +5,7 @@
 // constants, which begin with SHADOW_, have no holes, and comments have none either. Where a hole is filled with
 // nothing, the rest of its list item is removed as well, up to and including the comma. Two holes are declared by the
 // templates themselves: NAME, which is the name of a light, and SAMPLER, which is the name of a sampler.
-// Requires: view, cube_face, filter_direction.
+// Requires: view, place, cube_face, filter_direction.
 
 // Is the number of the bind group, with the suffix `u`.
 const GROUP: u32 = 1u;
@@ -44,9 +44,18 @@ const FIRST_VIEW: u32 = 0u;
 // for an index that no slot has, so that it is always below VIEW_COUNT.
 const ANY_VIEW: u32 = 0u;
 
-// BIAS is the bias: `plane`, `normal_offset` or `manual`.
-fn shadow_receiver_BIAS(view: ShadowViewUniform, position: vec3<f32>, normal: vec3<f32>) -> ShadowReceiver {
-    return shadow_receiver_at(view, position, position - view.anchor, vec2<f32>(0.0), 0.0);
+// Are the numbers of a cascade and of the next one, without suffix. In `cascades.wgsl` CASCADE is the first one.
+const CASCADE: u32 = 0u;
+const NEXT: u32 = 1u;
+
+// BIAS is the bias for the kind of light: `plane_directional`, `normal_offset_local` and so on.
+fn shadow_BIAS(
+    view: ShadowViewUniform,
+    mapping: ShadowMapping,
+    place: ShadowPlace,
+    normal: vec3<f32>,
+) -> ShadowReceiver {
+    return shadow_receiver(view, mapping, place, place.texel_from_middle, place.depth, vec2<f32>(0.0));
 }
 
 // FILTER is the name of the filter's module, such as `filter_tent3`.

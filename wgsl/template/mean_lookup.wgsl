@@ -4,24 +4,26 @@
 // It is the mean of samples in directions around that of the position. Each sample is looked up on the face of the cube
 // that its direction meets.
 fn shadow_NAME(INDEX: u32, position: vec3<f32>, normal: vec3<f32>) -> f32 {
-    let light = shadow_views_NAME[ANY_VIEW];
-    let from_light = position - light.anchor;
+    let anchor = shadow_views_NAME[ANY_VIEW].anchor;
+    let from_light = position - anchor;
     // The distance, which varies, is the left side of the comparison and the uniform the right side, because of the
-    // driver defect that `shadow_view_holds` describes.
-    if length(from_light) >= light.range {
+    // driver defect that `place` describes.
+    if length(from_light) >= shadow_views_NAME[ANY_VIEW].range {
         return 1.0;
     }
-    let radius = shadow_direction_PATTERN_radius(light, position);
+    let radius = shadow_direction_PATTERN_radius(shadow_views_NAME[ANY_VIEW], position);
     var lit = 0.0;
     for (var i = 0u; i < SAMPLE_COUNT; i++) {
         let offset = shadow_direction_PATTERN(i) * radius;
-        let sampled = shadow_direction_on_SURFACE(from_light, NORMAL, offset) + light.anchor;
-        let view = shadow_view_NAME(INDEX, sampled);
-        if view == VIEW_COUNT {
-            lit += 1.0;
-        } else {
-            let receiver = shadow_receiver_BIAS(shadow_views_NAME[view], sampled, normal);
+        let sampled = shadow_direction_on_SURFACE(from_light, NORMAL, offset) + anchor;
+        let place = shadow_place_of_NAME(INDEX, sampled);
+        if place.inside {
+            let along = shadow_axes_of_NAME(INDEX, sampled, normal);
+            let mapping = shadow_views_NAME[place.layer].mapping;
+            let receiver = shadow_BIAS(shadow_views_NAME[ANY_VIEW], mapping, place, along);
             lit += shadow_FILTER(shadow_map_NAME, SAMPLER, receiver);
+        } else {
+            lit += 1.0;
         }
     }
     return shadow_LIMIT(shadow_views_NAME[ANY_VIEW], position, lit / SAMPLE_COUNT_F32);

@@ -26,10 +26,8 @@ fn nearer(lamp: &Lamp, ground: f64) -> f64 {
     let drawn = lamp
         .uniforms()
         .iter()
-        .filter(|view| member::<[f32; 4]>(view, "light")[3] > 0.0);
-    // What the depth comes to at a distance of one is the near plane's distance.
-    let near =
-        drawn.map(|view| f64::from(member::<[[f32; 4]; 4]>(view, "texel_from_anchor")[3][2]));
+        .filter(|view| member::<f32>(view, "mapping.depth_scale") > 0.0);
+    let near = drawn.map(|view| f64::from(member::<f32>(view, "mapping.depth_scale")));
     let error = U * ground / near.fold(f64::INFINITY, f64::min);
     error / (1.0 + error)
 }

@@ -93,11 +93,10 @@ fn any_lens_is_fitted_or_refused() {
                 Ok(()) => {
                     taken += 1;
                     for view in sun.shadow.maps().view_uniforms() {
-                        let columns: [[f32; 4]; 4] = member(view, "texel_from_anchor");
-                        let planes = ["plane_across", "plane_down", "plane_depth"];
-                        let planes = planes.map(|name| member::<[f32; 4]>(view, name));
-                        let anchor: [f32; 3] = member(view, "anchor");
-                        let mut all = columns.iter().chain(&planes).flatten().chain(&anchor);
+                        let mapping: [f32; 8] = member(view, "mapping");
+                        let vectors = ["right", "down", "toward", "anchor"];
+                        let vectors = vectors.map(|name| member::<[f32; 3]>(view, name));
+                        let mut all = mapping.iter().chain(vectors.iter().flatten());
                         assert!(all.all(|number| number.is_finite()), "{name}: {view:?}");
                     }
                     assert!(seen.iter().all(|seen| (0.0..=1.0).contains(seen)), "{name}");
