@@ -1,14 +1,13 @@
 //! Provides many boxes as casters, all in one pair of buffers.
 
 use glam::Vec3;
+use shadow_support::gpu::Gpu;
+use shadow_support::mesh::Mesh;
+use shadow_support::random::Random;
 use wgpu_shadows::{
     Aabb, CasterPipeline, Revision, ShadowCaster, ShadowView, caster::CasterPipelineDescriptor,
     caster::CasterVertex, caster::ModelTransform, caster::PositionAttribute,
 };
-
-use crate::support::gpu::Gpu;
-use crate::support::mesh::Mesh;
-use crate::support::random::Random;
 
 /// Holds boxes on a square of ground, one caster each.
 pub struct Crowd {

@@ -1,15 +1,14 @@
 //! Builds a hall of 24 by 14 by 6 metres: floor and walls as flat meshes, a ceiling with a skylight, columns, and
 //! objects.
 
+use example_support::camera::Camera;
+use example_support::mesh::{Instance, Object, Vertex, cube, sphere, square};
 use glam::{Mat4, Quat, Vec3};
 use wgpu_shadows::{
     CasterPipeline, MeshCaster, ShadowCaster, caster::CasterPipelineDescriptor,
     caster::CasterVertex, caster::MeshCasterDescriptor, caster::MeshIndices,
     caster::ModelTransform, caster::PositionAttribute, error::CasterError,
 };
-
-use crate::common::camera::Camera;
-use crate::common::mesh::{Instance, Object, Vertex, cube, sphere, square};
 
 /// Are half the hall's extent along x and z, and its height.
 const HALF_LENGTH: f32 = 12.0;

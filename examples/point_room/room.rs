@@ -2,15 +2,14 @@
 
 use std::f32::consts::PI;
 
+use example_support::camera::Camera;
+use example_support::mesh::{Instance, Object, Vertex, cube, inside_out, sphere};
 use glam::{Mat4, Quat, Vec3};
 use wgpu_shadows::{
     Aabb, CasterPipeline, MeshCaster, ShadowCaster, caster::CasterPipelineDescriptor,
     caster::CasterVertex, caster::MeshCasterDescriptor, caster::MeshIndices,
     caster::ModelTransform, caster::PositionAttribute, error::CasterError,
 };
-
-use crate::common::camera::Camera;
-use crate::common::mesh::{Instance, Object, Vertex, cube, inside_out, sphere};
 
 /// Is half the side of the room.
 const HALF: f32 = 5.0;

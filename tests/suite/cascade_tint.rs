@@ -1,18 +1,19 @@
 //! Tests `DebugView::draw_cascades`: each pixel has the colour of the view that covers what is seen there.
 
 use glam::{DVec3, DVec4, Mat4};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::readback;
 use wgpu_shadows::{
     DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, debug::DebugView,
     error::DebugViewError, error::DeviceError, reference,
 };
 
-use crate::support::camera::Camera;
-use crate::support::frames::{Coverage, DirectionalFrame};
-use crate::support::gpu::{Gpu, gpu, vulkan};
-use crate::support::picture::{COLOR, color_target};
-use crate::support::probe::record;
-use crate::support::readback;
-use crate::support::scene::{Mesh, Scene};
+use crate::fixtures::frames::{Coverage, DirectionalFrame};
+use crate::fixtures::gpu::{Gpu, gpu, vulkan};
+use crate::fixtures::picture::{COLOR, color_target};
+use crate::fixtures::probe::record;
+use crate::fixtures::scene::Scene;
 
 const SIZE: u32 = 96;
 

@@ -2,6 +2,8 @@
 //! of the map.
 
 use glam::{DVec3, Mat4, Quat, Vec3, Vec4};
+use shadow_support::mesh::Mesh;
+use shadow_support::readback;
 use wgpu::{BufferUsages, VertexFormat};
 use wgpu_shadows::{
     Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
@@ -10,11 +12,9 @@ use wgpu_shadows::{
     caster::PositionAttribute,
 };
 
-use crate::support::frames::{Coverage, DirectionalFrame};
-use crate::support::gpu::{Gpu, gpu, vulkan};
-use crate::support::probe::record;
-use crate::support::readback;
-use crate::support::scene::Mesh;
+use crate::fixtures::frames::{Coverage, DirectionalFrame};
+use crate::fixtures::gpu::{Gpu, gpu, vulkan};
+use crate::fixtures::probe::record;
 
 const MAP_SIZE: u32 = 64;
 

@@ -5,17 +5,18 @@ use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use glam::{DVec3, Mat4, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::readback;
 use wgpu_shadows::{
     Aabb, CasterPipeline, DepthFormat, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, MeshCaster, Revision, ShadowCaster, ShadowError, ShadowView,
     caster::CasterPipelineDescriptor, report::ViewStatus,
 };
 
-use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::probe::record;
-use crate::support::readback;
-use crate::support::scene::{Mesh, default_pipeline};
+use crate::fixtures::frames::{Coverage, DirectionalFrame, RecordFrame};
+use crate::fixtures::gpu::{Gpu, gpu, two_gpus};
+use crate::fixtures::probe::record;
+use crate::fixtures::scene::default_pipeline;
 
 const BOX: Aabb = Aabb::new(Vec3::new(-4.0, -1.0, -4.0), Vec3::new(4.0, 4.0, 4.0));
 const MAP_SIZE: u32 = 64;
@@ -361,7 +362,7 @@ fn casters_find_the_pass_as_it_should_be() {
 /// A caster whose pipeline belongs to another device is refused before anything is recorded.
 #[test]
 fn pipelines_of_another_device() {
-    let [here, there] = Gpu::two();
+    let [here, there] = two_gpus();
     let own = slab(&here, &default_pipeline(&here), 0.0);
     let foreign = slab(&there, &default_pipeline(&there), 2.0);
     let mut shadow = sun(&here);

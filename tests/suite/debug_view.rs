@@ -3,6 +3,8 @@
 
 use glam::{DVec3, Vec3};
 use image::RgbaImage;
+use shadow_support::mesh::Mesh;
+use shadow_support::readback;
 use wgpu_shadows::{
     Aabb, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniLight, OmniShadow,
     OmniShadowDescriptor, ShadowMaps, SpotLight, SpotShadow, SpotShadowDescriptor,
@@ -10,15 +12,14 @@ use wgpu_shadows::{
     pool::PoolDescriptor, pool::PoolLight,
 };
 
-use crate::support::ask::{record_omni, record_spot, submitted};
-use crate::support::frames::{
+use crate::fixtures::ask::{record_omni, record_spot, submitted};
+use crate::fixtures::frames::{
     Coverage, DirectionalFrame, OmniFrame, PoolFrame, RecordFrame, SpotFrame,
 };
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::picture::{COLOR, color_pass, color_target};
-use crate::support::probe::record;
-use crate::support::readback;
-use crate::support::scene::{Mesh, Scene};
+use crate::fixtures::gpu::{Gpu, gpu};
+use crate::fixtures::picture::{COLOR, color_pass, color_target};
+use crate::fixtures::probe::record;
+use crate::fixtures::scene::Scene;
 
 /// Draws into the upper left `width` by `height` pixels of a square target.
 fn picture(

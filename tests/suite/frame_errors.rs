@@ -2,17 +2,19 @@
 //! shadows remain.
 
 use glam::{DVec3, Mat4, Vec3};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
 use wgpu_shadows::{
     Aabb, CameraView, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
     ShadowCaster, ShadowError,
 };
 
-use crate::support::camera::Camera;
-use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};
-use crate::support::gpu::gpu;
-use crate::support::probe::{Point, SunProbe, record};
-use crate::support::scene::{Mesh, default_pipeline};
-use crate::support::watched::Watched;
+use crate::fixtures::frames::{Coverage, DirectionalFrame, RecordFrame};
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::probe::{SunProbe, record};
+use crate::fixtures::scene::default_pipeline;
+use crate::fixtures::watched::Watched;
 
 const BOX: Aabb = Aabb::new(Vec3::new(-4.0, -0.5, -4.0), Vec3::new(4.0, 4.0, 4.0));
 const NAN: Vec3 = Vec3::new(f32::NAN, 2.0, 3.0);

@@ -3,8 +3,8 @@
 use glam::{Mat4, Vec3};
 use wgpu_shadows::shader;
 
-use crate::support::gpu::gpu;
-use crate::support::triangles::{SIZE, VERTEX, draw};
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::triangles::{SIZE, VERTEX, draw};
 
 /// With both windings, both handednesses, and vectors of any length to the side, a leaning triangle has its own normal
 /// on the given side.

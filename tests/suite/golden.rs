@@ -2,19 +2,20 @@
 
 use glam::{DVec3, Vec3};
 use image::RgbaImage;
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::readback;
 use wgpu_shadows::{
     Aabb, Bias, CameraView, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
     Filter, ShadowBindings, ShadowBindingsDescriptor, debug::DebugImage, debug::DebugView,
 };
 
-use crate::support::camera::Camera;
-use crate::support::frames::{Coverage, DirectionalFrame};
-use crate::support::golden::{Limits, assert_golden};
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::picture::{COLOR, color_pass, color_target, depth_target, scene_pass};
-use crate::support::probe::record;
-use crate::support::readback;
-use crate::support::scene::{Mesh, Scene};
+use crate::fixtures::frames::{Coverage, DirectionalFrame};
+use crate::fixtures::golden::{Limits, assert_golden};
+use crate::fixtures::gpu::{Gpu, gpu};
+use crate::fixtures::picture::{COLOR, color_pass, color_target, depth_target, scene_pass};
+use crate::fixtures::probe::record;
+use crate::fixtures::scene::Scene;
 
 const SIZE: u32 = 128;
 const LIGHT: Vec3 = Vec3::new(-1.1, -1.0, 0.2);

@@ -2,6 +2,9 @@
 //! coordinates from which they were drawn, and no receiver may shadow itself because of it.
 
 use glam::{DMat3, DVec3, Mat4, Quat, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
 use wgpu_shadows::{
     Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
     MeshCaster, Revision, ShadowCaster, ShadowView, SpotLight, SpotShadow, SpotShadowDescriptor,
@@ -9,12 +12,11 @@ use wgpu_shadows::{
     report::ViewStatus,
 };
 
-use crate::support::ask::{Ask, record_spot, submitted};
-use crate::support::frames::{Coverage, DirectionalFrame, PoolFrame, RecordFrame, SpotFrame};
-use crate::support::gpu::{Gpu, gpu, vulkan};
-use crate::support::probe::{Point, SunProbe, record};
-use crate::support::random::Random;
-use crate::support::scene::{Mesh, default_pipeline};
+use crate::fixtures::ask::{Ask, record_spot, submitted};
+use crate::fixtures::frames::{Coverage, DirectionalFrame, PoolFrame, RecordFrame, SpotFrame};
+use crate::fixtures::gpu::{Gpu, gpu, vulkan};
+use crate::fixtures::probe::{SunProbe, record};
+use crate::fixtures::scene::default_pipeline;
 
 /// Lists the distances of the wall from the world's origin, where the map is drawn first.
 const DISTANCES: [f64; 6] = [20.0, 120.0, 500.0, 1000.0, 5000.0, 20_000.0];

@@ -2,16 +2,17 @@
 //! drawn.
 
 use glam::{DVec3, Mat4, Vec3};
+use shadow_support::mesh::Mesh;
 use wgpu_shadows::{
     Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, MeshCaster, ShadowCaster,
     caster::CasterPipelineDescriptor, caster::CasterVertex, caster::MeshCasterDescriptor,
     caster::MeshIndices, error::CasterError, error::DeviceRefusal,
 };
 
-use crate::support::frames::{Coverage, DirectionalFrame};
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::probe::record;
-use crate::support::scene::{Mesh, default_pipeline};
+use crate::fixtures::frames::{Coverage, DirectionalFrame};
+use crate::fixtures::gpu::{Gpu, gpu, two_gpus};
+use crate::fixtures::probe::record;
+use crate::fixtures::scene::default_pipeline;
 
 #[test]
 fn meshes_that_do_not_fit_their_buffers() {
@@ -400,7 +401,7 @@ fn assert_can_be_drawn(gpu: &Gpu, caster: &MeshCaster) {
 /// Pipeline and buffers must be those of the device that is passed.
 #[test]
 fn meshes_of_another_device() {
-    let [here, there] = Gpu::two();
+    let [here, there] = two_gpus();
     let mesh = Mesh::cuboid(Vec3::ZERO, Vec3::ONE);
     let pipelines = [&here, &there].map(default_pipeline);
     let vertices =

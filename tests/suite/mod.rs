@@ -5,6 +5,7 @@ mod beside_engine_buffers;
 mod binding_errors;
 mod blending;
 mod boxes;
+mod cameras;
 mod cascade_tint;
 mod caster_errors;
 mod casters;

@@ -3,6 +3,9 @@
 //! no static-caster caches there, and reading maps back is slow.
 
 use glam::{DVec3, Mat4, Vec3};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::random::Random;
 use wgpu_shadows::{
     Aabb, CasterPipeline, DepthFormat, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor,
@@ -10,13 +13,10 @@ use wgpu_shadows::{
     report::ViewReport, report::ViewStatus,
 };
 
-use crate::support::camera::Camera;
-use crate::support::frames::{Coverage, DirectionalFrame, OmniFrame, RecordFrame};
-use crate::support::gpu::{Gpu, vulkan};
-use crate::support::multiview::{device, is_right};
-use crate::support::random::Random;
-use crate::support::scene::Mesh;
-use crate::support::texture_bytes::TextureBytes;
+use crate::fixtures::frames::{Coverage, DirectionalFrame, OmniFrame, RecordFrame};
+use crate::fixtures::gpu::{Gpu, vulkan};
+use crate::fixtures::multiview::{device, is_right};
+use crate::fixtures::texture_bytes::TextureBytes;
 
 /// Holds boxes of which some move, all move, or none does, for some frames each; some appear and disappear.
 struct Crowd {

@@ -2,19 +2,21 @@
 //! `ShadowBindings`, to the bit.
 
 use glam::{DVec3, Vec3};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::{Point, PointShader};
+use shadow_support::random::Random;
 use wgpu_shadows::{
     DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniLight, OmniShadow,
     OmniShadowDescriptor, shader,
 };
 
-use crate::support::ask::{Ask, record_omni};
-use crate::support::camera::Camera;
-use crate::support::frames::{Coverage, DirectionalFrame, OmniFrame};
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::probe::{Point, PointShader, record};
-use crate::support::random::Random;
-use crate::support::scene::{Mesh, Scene};
-use crate::support::wgsl;
+use crate::fixtures::ask::{Ask, record_omni};
+use crate::fixtures::frames::{Coverage, DirectionalFrame, OmniFrame};
+use crate::fixtures::gpu::{Gpu, gpu};
+use crate::fixtures::probe::record;
+use crate::fixtures::scene::Scene;
+use crate::fixtures::wgsl;
 
 const MODULES: [&str; 4] = ["bias_plane", "filter_tent3", "cube_face", "normal"];
 

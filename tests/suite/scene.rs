@@ -1,6 +1,11 @@
 //! Tests one frame for all lights: several cameras that share the maps, and which objects cast and receive.
 
 use glam::{DMat4, DVec3, Mat4, Vec3};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
+use shadow_support::triangle::{Triangle, occluded};
 use wgpu_shadows::{
     Aabb, CameraView, CasterPipeline, Coverage, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor, Revision,
@@ -8,13 +13,10 @@ use wgpu_shadows::{
     SpotShadow, SpotShadowDescriptor, Stability, report::ShadowReport, report::ViewStatus,
 };
 
-use crate::support::ask::Ask;
-use crate::support::camera::Camera;
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::local_truth::Settled;
-use crate::support::probe::Point;
-use crate::support::random::Random;
-use crate::support::scene::{Mesh, Triangle, default_pipeline, occluded};
+use crate::fixtures::ask::Ask;
+use crate::fixtures::gpu::{Gpu, gpu};
+use crate::fixtures::local_truth::Settled;
+use crate::fixtures::scene::default_pipeline;
 
 const SUN: DVec3 = DVec3::new(0.35, -1.0, 0.2);
 const MAP_SIZE: u32 = 2048;

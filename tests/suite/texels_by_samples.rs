@@ -1,13 +1,14 @@
 //! Tests that where shaders cannot gather, and the library samples instead, every filter gives the same visibilities,
 //! to the bit, as by the gathers that `filter_parity` compares with the CPU reference.
 
+use shadow_support::probe::{Point, PointShader};
 use wgpu_shadows::shader::{self, MODULES};
 use wgpu_shadows::{ShadowBindings, ShadowBindingsDescriptor};
 
+use crate::fixtures::gpu::{Gpu, gpu};
+use crate::fixtures::probe::SunProbe;
+use crate::fixtures::wgsl;
 use crate::suite::filter_parity::{BIASES, Lit, filters, points, scene};
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::probe::{Point, PointShader, SunProbe};
-use crate::support::wgsl;
 
 /// Runs the WGSL that `ShadowBindings` emits for the light where there is no gather, with the layout and group that it
 /// needs.

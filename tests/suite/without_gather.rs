@@ -2,14 +2,14 @@
 //! whose environment requests it. There the library draws what it draws elsewhere.
 
 use image::RgbaImage;
+use shadow_support::readback;
 use wgpu_shadows::{Bias, Filter, debug::DebugImage, debug::DebugView, shader};
 
-use crate::support::child;
-use crate::support::floor::{SIZE, picture};
-use crate::support::gpu::{Gpu, GpuRequest, gpu, vulkan};
-use crate::support::lights::{Kind, Light, camera, stage};
-use crate::support::picture::{COLOR, color_pass, color_target};
-use crate::support::readback;
+use crate::fixtures::child;
+use crate::fixtures::floor::{SIZE, picture};
+use crate::fixtures::gpu::{Gpu, GpuRequest, gpu, has_adapter, own_gpu, vulkan};
+use crate::fixtures::lights::{Kind, Light, camera, stage};
+use crate::fixtures::picture::{COLOR, color_pass, color_target};
 
 /// Disables desktop OpenGL and limits OpenGL ES to 3.0. The images that are compared with come from Vulkan, whatever
 /// the backend of the run.
@@ -21,10 +21,10 @@ const ES_3_0: [(&str, &str); 3] = [
 
 /// Returns the device, or `None` where the machine has no OpenGL, or not Mesa's, which reads these variables.
 fn es_3_0() -> Option<Gpu> {
-    if !Gpu::is_there(wgpu::Backends::GL) {
+    if !has_adapter(wgpu::Backends::GL) {
         return None;
     }
-    let gpu = Gpu::new(GpuRequest {
+    let gpu = own_gpu(GpuRequest {
         backend: Some(wgpu::Backends::GL),
         limits: wgpu::Limits::downlevel_webgl2_defaults(),
         ..Default::default()

@@ -7,19 +7,21 @@ use std::cell::RefCell;
 
 use glam::{DVec3, Mat4, Vec3};
 use proptest::prelude::*;
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
+use shadow_support::triangle::{Triangle, occluded};
 use wgpu_shadows::caster::caster_shape;
 use wgpu_shadows::{Aabb, DirectionalShadowDescriptor, ShadowCaster};
 
 use super::fuzz_values::run;
 use super::stage::{Sun, Verdict, shining};
 use super::table;
-use crate::support::camera::Camera;
-use crate::support::frames::Coverage;
-use crate::support::gpu::gpu;
-use crate::support::probe::Point;
-use crate::support::random::Random;
-use crate::support::scene::{Mesh, Triangle, default_pipeline, occluded};
-use crate::support::watched::Watched;
+use crate::fixtures::frames::Coverage;
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::scene::default_pipeline;
+use crate::fixtures::watched::Watched;
 
 /// Describes a scene of some boxes on a ground.
 #[derive(Clone, Debug)]

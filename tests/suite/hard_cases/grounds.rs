@@ -2,18 +2,20 @@
 //! shadow.
 
 use glam::{DVec3, Mat4, Vec3};
+use shadow_support::camera::{Camera, Lens, Pose};
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
+use shadow_support::triangle::{Triangle, occluded};
 use wgpu_shadows::caster::caster_shape;
 use wgpu_shadows::{Aabb, DirectionalShadowDescriptor, MeshCaster, ShadowCaster, Stability};
 
 use super::stage::{SUM_ERROR, Sun, Verdict, differ, shining};
 use super::table;
-use crate::support::camera::{Camera, Lens, Pose};
-use crate::support::frames::Coverage;
-use crate::support::gpu::gpu;
-use crate::support::probe::Point;
-use crate::support::random::Random;
-use crate::support::scene::{Mesh, Triangle, default_pipeline, occluded};
-use crate::support::watched::Watched;
+use crate::fixtures::frames::Coverage;
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::scene::default_pipeline;
+use crate::fixtures::watched::Watched;
 
 const LIGHT: DVec3 = DVec3::new(0.527, -0.738, -0.4216);
 const LOW_LIGHT: DVec3 = DVec3::new(0.93, -0.31, -0.2);

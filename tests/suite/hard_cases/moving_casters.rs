@@ -1,6 +1,8 @@
 //! Tests that the shadows of static casters do not change while other casters move.
 
 use glam::{DVec3, Mat4, Quat, Vec3};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
 use wgpu_shadows::{
     DirectionalShadowDescriptor, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor,
     ShadowCaster,
@@ -8,11 +10,10 @@ use wgpu_shadows::{
 
 use super::stage::{Sun, level, shining};
 use super::table;
-use crate::support::ask::{Ask, record_omni};
-use crate::support::camera::Camera;
-use crate::support::frames::{Coverage, OmniFrame};
-use crate::support::gpu::gpu;
-use crate::support::scene::{Mesh, default_pipeline};
+use crate::fixtures::ask::{Ask, record_omni};
+use crate::fixtures::frames::{Coverage, OmniFrame};
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::scene::default_pipeline;
 
 const FRAMES: u32 = 300;
 

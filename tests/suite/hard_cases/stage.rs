@@ -1,18 +1,20 @@
 //! Provides a sun, its probe, and boxes on a floor whose truth is known.
 
 use glam::{DMat3, DVec3, Mat4, Vec3};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
 use wgpu_shadows::{
     Aabb, CascadeSplit, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
     ShadowCaster, report::ShadowReport,
 };
 
-use crate::support::camera::Camera;
-use crate::support::frames::{Coverage, DirectionalFrame};
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::probe::{Point, SunProbe, record};
-use crate::support::random::Random;
-use crate::support::random_scene::World;
-use crate::support::scene::{Mesh, Scene, default_pipeline};
+use crate::fixtures::frames::{Coverage, DirectionalFrame};
+use crate::fixtures::gpu::{Gpu, gpu};
+use crate::fixtures::probe::{SunProbe, record};
+use crate::fixtures::random_scene::World;
+use crate::fixtures::scene::{Scene, default_pipeline};
 
 /// Bounds the rounding of a sum of at most 64 weights in f32, stretched three times by the default's sharpness.
 pub const SUM_ERROR: f32 = 192.0 * f32::EPSILON;
