@@ -19,8 +19,7 @@ use shadow_support::readback;
 use wgpu_shadows::{
     CasterPipeline, Coverage, DirectionalLight, DirectionalShadow, MeshCaster, OmniLight,
     OmniShadow, ShadowCaster, ShadowFrameDescriptor, ShadowScene, caster::CasterPipelineDescriptor,
-    caster::CasterVertex, caster::MeshCasterDescriptor, caster::MeshIndices,
-    caster::ModelTransform, caster::PositionAttribute, shader,
+    caster::CasterVertex, caster::ModelTransform, caster::PositionAttribute, shader,
 };
 
 /// Draws a scene whose shadows are in the engine's own bind group.
@@ -216,20 +215,8 @@ fn casters(
             ..Default::default()
         },
     )?;
-    let caster = |object: &Object| {
-        MeshCaster::new(
-            device,
-            &MeshCasterDescriptor {
-                label: None,
-                pipeline: &pipeline,
-                vertices: &object.mesh.vertices,
-                indices: MeshIndices::None {
-                    vertices: 0..object.mesh.vertex_count,
-                },
-                bounds_model: object.mesh.bounds_model,
-                render_from_model: object.render_from_model,
-            },
-        )
-    };
-    objects.iter().map(caster).collect()
+    let casters = objects
+        .iter()
+        .map(|object| object.caster(device, &pipeline));
+    casters.collect()
 }

@@ -4,46 +4,13 @@ use glam::{DVec3, Mat4, Vec3};
 use shadow_support::camera::Camera;
 use shadow_support::mesh::Mesh;
 use wgpu_shadows::{
-    Aabb, CasterPipeline, Coverage, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, MeshCaster, Revision, ShadowCaster, ShadowFrameDescriptor,
-    ShadowScene, ShadowView, report::ViewStatus,
+    Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, ShadowCaster,
+    ShadowFrameDescriptor, ShadowScene, report::ViewStatus,
 };
 
 use crate::fixtures::gpu::gpu;
 use crate::fixtures::scene::default_pipeline;
-
-/// Is a mesh with the flags that the test chooses.
-struct Flagged {
-    mesh: MeshCaster,
-    casts: bool,
-    receives: bool,
-}
-
-impl ShadowCaster for Flagged {
-    fn bounds(&self) -> Aabb {
-        self.mesh.bounds()
-    }
-
-    fn pipeline(&self) -> &CasterPipeline {
-        self.mesh.pipeline()
-    }
-
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &ShadowView) {
-        self.mesh.draw(pass, view);
-    }
-
-    fn casts(&self) -> bool {
-        self.casts
-    }
-
-    fn receives(&self) -> bool {
-        self.receives
-    }
-
-    fn revision(&self) -> Option<Revision> {
-        self.mesh.revision()
-    }
-}
+use crate::fixtures::watched::Watched;
 
 /// A dome that does not receive costs no texels; a sheet that does not cast is not drawn and still counts as a
 /// receiver.
@@ -55,10 +22,10 @@ fn who_casts_and_who_receives() {
     let slab = slab.caster(gpu, &pipeline, Mat4::IDENTITY);
     let floor = Mesh::floor(0.0, 2.0).caster(gpu, &pipeline, Mat4::IDENTITY);
     let dome = Mesh::sphere(Vec3::ZERO, 400.0, 8).caster(gpu, &pipeline, Mat4::IDENTITY);
-    let flagged = |mesh, casts, receives| Flagged {
-        mesh,
+    let flagged = |mesh, casts, receives| Watched {
         casts,
         receives,
+        ..Watched::new(mesh)
     };
     let mut floor = flagged(floor, false, true);
     let mut dome = flagged(dome, false, false);

@@ -126,6 +126,15 @@ impl Ways {
     }
 }
 
+/// Records a frame of both lights, so that they have the same history, into an encoder that is dropped.
+fn throw_away<F, L: RecordFrame<F>>(gpu: &Gpu, lights: [&mut L; 2], frame: &F) {
+    let mut thrown_away = gpu.encoder();
+    for light in lights {
+        let report = light.record_frame(&mut thrown_away, frame);
+        report.expect("a valid frame");
+    }
+}
+
 /// The camera and the light are still most of the time and sometimes jump; sometimes an encoder is dropped.
 #[test]
 fn kept_maps_of_a_sun_are_what_would_be_drawn() {
@@ -172,13 +181,7 @@ fn kept_maps_of_a_sun_are_what_would_be_drawn() {
                 receivers: &[],
             };
             if random.unit() < 0.02 {
-                let mut thrown_away = gpu.encoder();
-                let report = kept.record_frame(&mut thrown_away, &frame);
-                report.expect("a valid frame");
-                // The other light records the same frame, so that both have the same history.
-                let report = fresh.record_frame(&mut thrown_away, &frame);
-                report.expect("a valid frame");
-                drop(thrown_away);
+                throw_away(gpu, [&mut kept, &mut fresh], &frame);
                 kept.invalidate();
             }
             let mut encoder = gpu.encoder();
@@ -242,13 +245,7 @@ fn kept_faces_of_a_lamp_are_what_would_be_drawn() {
             receivers: &[],
         };
         if random.unit() < 0.02 {
-            let mut thrown_away = gpu.encoder();
-            let report = kept.record_frame(&mut thrown_away, &frame);
-            report.expect("a valid frame");
-            // The other light records the same frame, so that both have the same history.
-            let report = fresh.record_frame(&mut thrown_away, &frame);
-            report.expect("a valid frame");
-            drop(thrown_away);
+            throw_away(gpu, [&mut kept, &mut fresh], &frame);
             kept.invalidate();
         }
         let mut encoder = gpu.encoder();

@@ -5,7 +5,10 @@ use std::f32::consts::{PI, TAU};
 use bytemuck::{NoUninit, Pod, Zeroable};
 use glam::{Mat4, Vec3};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
-use wgpu_shadows::Aabb;
+use wgpu_shadows::{
+    Aabb, CasterPipeline, MeshCaster, caster::MeshCasterDescriptor, caster::MeshIndices,
+    error::CasterError,
+};
 
 /// Is a vertex; the library reads its position, and the engine's shader reads its normal as well.
 #[repr(C)]
@@ -56,6 +59,27 @@ impl Object {
             instance: vertex_buffer(device, &[instance]),
             render_from_model: instance.render_from_model,
         }
+    }
+
+    /// Returns the object as the library draws it, with a pipeline for positions in [`Vertex`].
+    pub fn caster(
+        &self,
+        device: &wgpu::Device,
+        pipeline: &CasterPipeline,
+    ) -> Result<MeshCaster, CasterError> {
+        MeshCaster::new(
+            device,
+            &MeshCasterDescriptor {
+                label: Some("object"),
+                pipeline,
+                vertices: &self.mesh.vertices,
+                indices: MeshIndices::None {
+                    vertices: 0..self.mesh.vertex_count,
+                },
+                bounds_model: self.mesh.bounds_model,
+                render_from_model: self.render_from_model,
+            },
+        )
     }
 }
 

@@ -91,6 +91,13 @@ impl Changes {
         )
     }
 
+    /// Asserts that the still shadow changed in at most one frame of a hundred, and returns the words.
+    fn few(&self, name: &str) -> String {
+        let words = self.words(name);
+        assert!(self.frames * 100 <= FRAMES, "{words}");
+        words
+    }
+
     fn texel(&mut self, texel: f64, last: f64) {
         self.sizes += u32::from(texel != last && last > 0.0);
         self.coarsest = self.coarsest.max(texel);
@@ -175,12 +182,7 @@ fn still_shadows_stay_still_beside_moving_casters() {
             },
             || sun.borrow().ask(&points),
         );
-        words.push(changes.words(motion.name));
-        assert!(
-            changes.frames * 100 <= FRAMES,
-            "{}",
-            changes.words(motion.name)
-        );
+        words.push(changes.few(motion.name));
     }
     table::record(
         "casters that move beside a still box under a sun, 300 frames each",
@@ -227,12 +229,7 @@ fn still_shadows_of_a_lamp_stay_still_beside_moving_casters() {
             },
             || ask.points(gpu(), &points),
         );
-        words.push(changes.words(motion.name));
-        assert!(
-            changes.frames * 100 <= FRAMES,
-            "{}",
-            changes.words(motion.name)
-        );
+        words.push(changes.few(motion.name));
     }
     table::record(
         "casters that move beside a still box under a lamp, 300 frames each",

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! gpu.rs        a device without a window; readback.rs: what it computed; clock.rs: how long that took
+//! bind.rs       bind groups whose bindings are numbered in order
 //! random.rs     the same numbers on every machine
 //! mesh.rs       generated meshes, as casters and as triangles; triangle.rs: triangles in f64
 //! camera.rs     cameras of every kind, with the rays of their pixels
@@ -12,6 +13,7 @@
 //! measure/      errors and costs of techniques in scenes, as tables and charts
 //! ```
 
+pub mod bind;
 pub mod camera;
 pub mod clock;
 pub mod closed_form;

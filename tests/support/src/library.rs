@@ -3,15 +3,14 @@
 use std::error::Error;
 
 use wgpu_shadows::{
-    Bias, CasterPipeline, Coverage, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, Filter, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor,
-    ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowError, ShadowFrameDescriptor,
-    ShadowScene, SpotLight, SpotShadow, SpotShadowDescriptor, caster::CasterPipelineDescriptor,
-    caster::CasterVertex, caster::ModelTransform, caster::PositionAttribute, report::ShadowReport,
-    report::ViewStatus,
+    Bias, Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter,
+    MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowBindings,
+    ShadowBindingsDescriptor, ShadowCaster, ShadowError, ShadowFrameDescriptor, ShadowScene,
+    SpotLight, SpotShadow, SpotShadowDescriptor, report::ShadowReport, report::ViewStatus,
 };
 
 use crate::gpu::Gpu;
+use crate::mesh::render_space_pipeline;
 use crate::scene::{Light, Scene};
 use crate::technique::{Cost, Footprint, LIGHT_NAME, Lookup, Technique};
 
@@ -34,17 +33,7 @@ pub struct SceneCasters {
 
 impl SceneCasters {
     pub fn new(gpu: &Gpu, scene: &Scene) -> Self {
-        let pipeline = CasterPipeline::new(
-            &gpu.device,
-            &CasterPipelineDescriptor {
-                vertex: CasterVertex::BuiltIn {
-                    position: PositionAttribute::float32x3(12),
-                    model: ModelTransform::Identity,
-                },
-                ..Default::default()
-            },
-        )
-        .expect("a valid pipeline");
+        let pipeline = render_space_pipeline(gpu);
         let meshes = scene.meshes.iter();
         let meshes = meshes.map(|mesh| mesh.caster(gpu, &pipeline, glam::Mat4::IDENTITY));
         Self {

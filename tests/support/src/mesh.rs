@@ -2,7 +2,9 @@
 
 use glam::{Mat3, Mat4, Vec3};
 use wgpu_shadows::{
-    Aabb, CasterPipeline, MeshCaster, caster::MeshCasterDescriptor, caster::MeshIndices,
+    Aabb, CasterPipeline, MeshCaster, caster::CasterPipelineDescriptor, caster::CasterVertex,
+    caster::MeshCasterDescriptor, caster::MeshIndices, caster::ModelTransform,
+    caster::PositionAttribute,
 };
 
 use crate::gpu::Gpu;
@@ -187,4 +189,16 @@ impl Mesh {
         )
         .expect("a valid mesh")
     }
+}
+
+/// Creates the pipeline of casters whose positions, of 12 bytes, are in render space already.
+pub fn render_space_pipeline(gpu: &Gpu) -> CasterPipeline {
+    let descriptor = CasterPipelineDescriptor {
+        vertex: CasterVertex::BuiltIn {
+            position: PositionAttribute::float32x3(12),
+            model: ModelTransform::Identity,
+        },
+        ..Default::default()
+    };
+    CasterPipeline::new(&gpu.device, &descriptor).expect("a valid pipeline")
 }

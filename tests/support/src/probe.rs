@@ -2,6 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
+use crate::bind;
 use crate::gpu::Gpu;
 use crate::readback;
 
@@ -128,24 +129,17 @@ fn ask(@builtin(global_invocation_id) id: vec3<u32>) {{
 
 /// Creates the layout of group 0: the points, and the storage buffer for their values.
 pub fn points_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let storage = |binding, read_only| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Storage { read_only },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        count: None,
+    let storage = |read_only| wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Storage { read_only },
+        has_dynamic_offset: false,
+        min_binding_size: None,
     };
-    gpu.device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("points"),
-            entries: &[storage(0, true), storage(1, false)],
-        })
+    let types = [storage(true), storage(false)];
+    bind::layout(gpu, wgpu::ShaderStages::COMPUTE, &types)
 }
 
-/// Creates a group 0 of points and of the buffer for their values, which is made by [`readback::storage`].
+/// Creates a group 0 of points and of the buffer for their values, which is made by
+/// [`readback::storage`].
 pub fn points_group(
     gpu: &Gpu,
     layout: &wgpu::BindGroupLayout,
@@ -153,18 +147,6 @@ pub fn points_group(
     output: &wgpu::Buffer,
 ) -> wgpu::BindGroup {
     let input = gpu.buffer(points, wgpu::BufferUsages::STORAGE);
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("points"),
-        layout,
-        entries: &[
-            wgpu::BindGroupEntry {
-                binding: 0,
-                resource: input.as_entire_binding(),
-            },
-            wgpu::BindGroupEntry {
-                binding: 1,
-                resource: output.as_entire_binding(),
-            },
-        ],
-    })
+    let resources = [&input, output].map(wgpu::Buffer::as_entire_binding);
+    bind::group(gpu, layout, &resources)
 }

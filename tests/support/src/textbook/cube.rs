@@ -3,10 +3,8 @@
 use glam::{DMat4, DVec3, DVec4};
 use wgpu_shadows::ShadowError;
 
-use super::meshes::{
-    ViewUniform, WorldMeshes, bind_group, depth_pipeline, map_binding_types, map_with_sampler,
-    uniform_layout,
-};
+use super::meshes::{ViewUniform, WorldMeshes, depth_pipeline, lookup_types, map_with_sampler};
+use crate::bind;
 use crate::camera;
 use crate::gpu::Gpu;
 use crate::scene::{Light, Scene};
@@ -74,7 +72,7 @@ impl<'a> CubeTechnique<'a> {
                 array_layer_count: Some(1),
                 ..Default::default()
             });
-            let group = bind_group(gpu, &view_layout, &[buffer.as_entire_binding()]);
+            let group = bind::group(gpu, &view_layout, &[buffer.as_entire_binding()]);
             (group, target)
         });
         let faces = faces.collect();
@@ -83,13 +81,10 @@ impl<'a> CubeTechnique<'a> {
             dimension: Some(dimension),
             ..Default::default()
         });
-        let lookup_layout = uniform_layout(
-            gpu,
-            wgpu::ShaderStages::COMPUTE,
-            &map_binding_types(dimension),
-        );
+        let lookup_layout =
+            bind::layout(gpu, wgpu::ShaderStages::COMPUTE, &lookup_types(dimension));
         let uniform = ViewUniform::new(DMat4::IDENTITY, light, viewer);
-        let lookup_group = bind_group(
+        let lookup_group = bind::group(
             gpu,
             &lookup_layout,
             &[

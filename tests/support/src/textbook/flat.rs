@@ -3,10 +3,8 @@
 use glam::{DMat4, DVec3, DVec4};
 use wgpu_shadows::ShadowError;
 
-use super::meshes::{
-    ViewUniform, WorldMeshes, bind_group, depth_pipeline, map_binding_types, map_with_sampler,
-    uniform_layout,
-};
+use super::meshes::{ViewUniform, WorldMeshes, depth_pipeline, lookup_types, map_with_sampler};
+use crate::bind;
 use crate::gpu::Gpu;
 use crate::scene::{Light, Scene};
 use crate::technique::{Cost, Footprint, Lookup, Technique};
@@ -30,7 +28,7 @@ impl DepthDrawer {
         let (texture, sampler) = map_with_sampler(gpu, map_size, 1);
         Self {
             pipeline,
-            view_group: bind_group(gpu, &view_layout, &[view.as_entire_binding()]),
+            view_group: bind::group(gpu, &view_layout, &[view.as_entire_binding()]),
             view,
             target: texture.create_view(&Default::default()),
             sampler,
@@ -81,16 +79,16 @@ impl<'a> FlatTechnique<'a> {
         let clip_from_world = clip_from_render * DMat4::from_translation(-scene.origin);
         let uniform = ViewUniform::new(clip_from_world, light.as_vec4(), sun.as_vec3().extend(0.0));
         let drawer = DepthDrawer::new(gpu, &uniform, map_size);
-        let lookup_layout = uniform_layout(
+        let lookup_layout = bind::layout(
             gpu,
             wgpu::ShaderStages::COMPUTE,
-            &map_binding_types(wgpu::TextureViewDimension::D2),
+            &lookup_types(wgpu::TextureViewDimension::D2),
         );
         Self {
             meshes,
             map_size,
             clip_from_render,
-            lookup_group: bind_group(
+            lookup_group: bind::group(
                 gpu,
                 &lookup_layout,
                 &[

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use glam::{DMat4, DVec3, Mat4, Vec3, Vec4};
 
+use crate::bind;
 use crate::gpu::Gpu;
 use crate::mesh::Mesh;
 use crate::scene::Scene;
@@ -133,7 +134,7 @@ pub fn depth_pipeline(
     fragment_entry: Option<&str>,
 ) -> (wgpu::RenderPipeline, wgpu::BindGroupLayout) {
     let module = gpu.shader(source);
-    let view_layout = uniform_layout(gpu, wgpu::ShaderStages::VERTEX_FRAGMENT, &[]);
+    let view_layout = bind::layout(gpu, wgpu::ShaderStages::VERTEX_FRAGMENT, &[bind::UNIFORM]);
     let layout = gpu
         .device
         .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -178,53 +179,6 @@ pub fn depth_pipeline(
     (pipeline, view_layout)
 }
 
-/// Creates a layout of one uniform at binding 0, followed by `others`.
-pub fn uniform_layout(
-    gpu: &Gpu,
-    visibility: wgpu::ShaderStages,
-    others: &[wgpu::BindingType],
-) -> wgpu::BindGroupLayout {
-    let uniform = wgpu::BindingType::Buffer {
-        ty: wgpu::BufferBindingType::Uniform,
-        has_dynamic_offset: false,
-        min_binding_size: None,
-    };
-    let entries: Vec<_> = (0u32..)
-        .zip(std::iter::once(&uniform).chain(others))
-        .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility,
-            ty: *ty,
-            count: None,
-        })
-        .collect();
-    gpu.device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("textbook"),
-            entries: &entries,
-        })
-}
-
-/// Creates a bind group of `resources` at bindings 0, 1, ...
-pub fn bind_group(
-    gpu: &Gpu,
-    layout: &wgpu::BindGroupLayout,
-    resources: &[wgpu::BindingResource<'_>],
-) -> wgpu::BindGroup {
-    let entries: Vec<_> = (0u32..)
-        .zip(resources)
-        .map(|(binding, resource)| wgpu::BindGroupEntry {
-            binding,
-            resource: resource.clone(),
-        })
-        .collect();
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("textbook"),
-        layout,
-        entries: &entries,
-    })
-}
-
 /// Creates the map, its sampler as the tutorial has it (nearest), and the binding types of both.
 pub fn map_with_sampler(gpu: &Gpu, map_size: u32, layers: u32) -> (wgpu::Texture, wgpu::Sampler) {
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
@@ -247,14 +201,11 @@ pub fn map_with_sampler(gpu: &Gpu, map_size: u32, layers: u32) -> (wgpu::Texture
     (texture, sampler)
 }
 
-/// Returns the binding types of a map of this dimension and of its sampler.
-pub fn map_binding_types(view_dimension: wgpu::TextureViewDimension) -> [wgpu::BindingType; 2] {
+/// Returns the binding types of a uniform, of a map of this dimension and of its sampler.
+pub fn lookup_types(view_dimension: wgpu::TextureViewDimension) -> [wgpu::BindingType; 3] {
     [
-        wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Depth,
-            view_dimension,
-            multisampled: false,
-        },
+        bind::UNIFORM,
+        bind::depth_texture(view_dimension),
         wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering),
     ]
 }
