@@ -10,14 +10,13 @@
 use std::process::ExitCode;
 
 use clap::Parser;
+use shadow_support::clock::Clock;
+use shadow_support::gpu::{Gpu, GpuRequest};
 
-use growth::clock::Clock;
 use growth::stage::Stage;
 use growth::{cpu, device, faces, motion};
-use support::gpu::Gpu;
 
 mod growth;
-mod support;
 
 /// Measures how the cost of shadows grows.
 #[derive(Parser)]
@@ -38,7 +37,7 @@ struct Arguments {
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    let gpu = match Gpu::new() {
+    let gpu = match Gpu::new(&GpuRequest::measuring()) {
         Ok(gpu) => gpu,
         Err(error) => {
             eprintln!("cost: {error}");

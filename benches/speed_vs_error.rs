@@ -8,7 +8,7 @@
 //! software rasterizer no other time is meaningful. The run fails where the library's default, or another of the
 //! configurations it recommends, is not on the Pareto front of work per frame against rmse.
 //!
-//! `support/mod.rs` lists its parts.
+//! `tests/support/src/measure/mod.rs` lists its parts.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -16,19 +16,19 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Parser;
-
-use support::chart::{self, Point, Words};
-use support::configuration::{self, Configuration, Extent};
-use support::floor::Floors;
-use support::gpu::Gpu;
-use support::measure::{Sample, Subject};
-use support::overall::{self, Overall};
-use support::pixels::Effort;
-use support::probe::Prober;
-use support::scene::Scene;
-use support::{closed_form, parallel, report, scenes};
-
-mod support;
+use shadow_support::closed_form;
+use shadow_support::gpu::{Gpu, GpuRequest};
+use shadow_support::measure::chart::{self, Point, Words};
+use shadow_support::measure::configuration::{self, Configuration, Extent};
+use shadow_support::measure::floor::Floors;
+use shadow_support::measure::overall::{self, Overall};
+use shadow_support::measure::parallel;
+use shadow_support::measure::pixels::Effort;
+use shadow_support::measure::prober::Prober;
+use shadow_support::measure::report;
+use shadow_support::measure::subject::{Sample, Subject};
+use shadow_support::scene::Scene;
+use shadow_support::scenes;
 
 /// Is the number of timed runs of every configuration.
 const REPEATS: u32 = 2;
@@ -84,7 +84,7 @@ fn main() -> ExitCode {
 /// Measures, prints and writes; the inner result is the judgement of the presets.
 fn run(arguments: &Arguments) -> Result<Result<String, String>, Box<dyn Error>> {
     let start = Instant::now();
-    let gpu = Gpu::new()?;
+    let gpu = Gpu::new(&GpuRequest::measuring())?;
     println!("{}", gpu.describe());
     if gpu.is_software() {
         println!(
@@ -260,7 +260,7 @@ fn charts_of_all(arguments: &Arguments, entries: &[Overall]) -> Result<(), Box<d
         .iter()
         .map(|entry| [entry.time_ratio, entry.rmse])
         .collect();
-    let front = support::pareto::front(&costs);
+    let front = shadow_support::measure::pareto::front(&costs);
     let points: Vec<_> = entries
         .iter()
         .zip(costs)

@@ -4,27 +4,23 @@
 //! `cargo run --example own_layout` draws a floor, a box and a ball under a sun and a point light into
 //! `target/own_layout.png`. The parts to read are [`layout`], [`run`] and `own_layout.wgsl`; the rest is the scene.
 
-#[path = "common/mod.rs"]
-mod common;
-
 use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
+use example_support::camera::Camera;
+use example_support::mesh::{Instance, Object, Vertex, cube, sphere, square};
+use example_support::phong::{Batch, Lighting, Phong, PhongDescriptor, Picture};
+use example_support::{arguments, picture};
 use glam::{DVec3, Mat4, Vec3};
+use shadow_support::gpu::{Gpu, GpuRequest};
+use shadow_support::readback;
 use wgpu_shadows::{
     CasterPipeline, Coverage, DirectionalLight, DirectionalShadow, MeshCaster, OmniLight,
     OmniShadow, ShadowCaster, ShadowFrameDescriptor, ShadowScene, caster::CasterPipelineDescriptor,
-    caster::CasterVertex, caster::MeshCasterDescriptor, caster::MeshIndices,
-    caster::ModelTransform, caster::PositionAttribute, shader,
+    caster::CasterVertex, caster::ModelTransform, caster::PositionAttribute, shader,
 };
-
-use common::camera::Camera;
-use common::gpu::Gpu;
-use common::mesh::{Instance, Object, Vertex, cube, sphere, square};
-use common::phong::{Batch, Lighting, Phong, PhongDescriptor, Picture};
-use common::{arguments, picture};
 
 /// Draws a scene whose shadows are in the engine's own bind group.
 #[derive(Parser)]
@@ -61,7 +57,7 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
-    let gpu = Gpu::new()?;
+    let gpu = Gpu::new(&GpuRequest::default())?;
     let mut sun = DirectionalShadow::new(&gpu.device, &Default::default())?;
     let mut lamp = OmniShadow::new(&gpu.device, &Default::default())?;
 
@@ -111,7 +107,7 @@ fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
     let mut scene = ShadowScene::new();
     let frame = scene.frame(&ShadowFrameDescriptor {
         origin: DVec3::ZERO,
-        coverage: Coverage::Cameras(&[camera.for_shadows()]),
+        coverage: Coverage::Cameras(&[camera.view]),
         casters: &casters,
         receivers: &[],
     })?;
@@ -134,7 +130,7 @@ fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
         target: &target,
     };
     phong.draw(&gpu, &mut encoder, &view, objects.iter().map(Batch::from));
-    let pixels = gpu.read(encoder, &target)?;
+    let pixels = readback::texels(&gpu, encoder, &target)?;
     if let Some(folder) = arguments.file.parent() {
         picture::make_folder(folder)?;
     }
@@ -219,20 +215,8 @@ fn casters(
             ..Default::default()
         },
     )?;
-    let caster = |object: &Object| {
-        MeshCaster::new(
-            device,
-            &MeshCasterDescriptor {
-                label: None,
-                pipeline: &pipeline,
-                vertices: &object.mesh.vertices,
-                indices: MeshIndices::None {
-                    vertices: 0..object.mesh.vertex_count,
-                },
-                bounds_model: object.mesh.bounds_model,
-                render_from_model: object.render_from_model,
-            },
-        )
-    };
-    objects.iter().map(caster).collect()
+    let casters = objects
+        .iter()
+        .map(|object| object.caster(device, &pipeline));
+    casters.collect()
 }

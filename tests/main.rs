@@ -4,5 +4,5 @@
 //! OpenGL instead of Vulkan, `SHADOW_GOLDEN=update` rewrites the reference images, and `SHADOW_HARD_CASES=update`
 //! rewrites the table in `doc/hard_cases.md` (one backend's column per run).
 
+mod fixtures;
 mod suite;
-mod support;

@@ -2,6 +2,7 @@
 //! and lights.
 
 use glam::{DVec3, Vec3};
+use shadow_support::camera;
 use wgpu_shadows::{
     Aabb, Coverage, Filter, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowScene,
 };
@@ -12,7 +13,6 @@ use super::lamps::Lamps;
 use super::processor;
 use super::stage::{self, Stage};
 use super::table::Growth;
-use crate::support::camera;
 
 /// Measures CPU time and allocations of a frame against the number of casters, all of them in the map.
 pub fn casters(stage: &Stage<'_>, most: u32) {

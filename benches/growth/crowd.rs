@@ -1,14 +1,10 @@
 //! Provides many boxes as casters, all in one pair of buffers.
 
 use glam::Vec3;
-use wgpu_shadows::{
-    Aabb, CasterPipeline, Revision, ShadowCaster, ShadowView, caster::CasterPipelineDescriptor,
-    caster::CasterVertex, caster::ModelTransform, caster::PositionAttribute,
-};
-
-use crate::support::gpu::Gpu;
-use crate::support::mesh::Mesh;
-use crate::support::random::Random;
+use shadow_support::gpu::Gpu;
+use shadow_support::mesh::{Mesh, render_space_pipeline};
+use shadow_support::random::Random;
+use wgpu_shadows::{Aabb, CasterPipeline, Revision, ShadowCaster, ShadowView};
 
 /// Holds boxes on a square of ground, one caster each.
 pub struct Crowd {
@@ -55,17 +51,7 @@ impl Crowd {
             .flat_map(|mesh| &mesh.positions)
             .copied()
             .collect();
-        let pipeline = CasterPipeline::new(
-            &gpu.device,
-            &CasterPipelineDescriptor {
-                vertex: CasterVertex::BuiltIn {
-                    position: PositionAttribute::float32x3(12),
-                    model: ModelTransform::Identity,
-                },
-                ..Default::default()
-            },
-        )
-        .expect("a valid pipeline");
+        let pipeline = render_space_pipeline(gpu);
         let vertices = gpu.buffer(&positions, wgpu::BufferUsages::VERTEX);
         let indices = gpu.buffer(&meshes[0].indices, wgpu::BufferUsages::INDEX);
         let mut first_vertex = 0;

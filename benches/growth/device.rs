@@ -1,21 +1,21 @@
 //! Measures device time of maps and lookups against cascades, map size and taps, and compares it with the bare minimum.
 
 use glam::{DMat4, DVec3, DVec4, Vec3};
+use shadow_support::camera;
+use shadow_support::gpu::Gpu;
+use shadow_support::library::{LibraryOptions, LibraryTechnique, SceneCasters};
+use shadow_support::measure::configuration::filter_name;
+use shadow_support::measure::prober::Prober;
+use shadow_support::measure::statistics::Spread;
+use shadow_support::mesh::Mesh;
+use shadow_support::scene::{Light, Scene};
+use shadow_support::textbook::flat::DepthDrawer;
+use shadow_support::textbook::meshes::{ViewUniform, WorldMeshes};
 use wgpu_shadows::{Bias, Coverage, Filter};
 
 use super::crowd::{self, Crowd};
 use super::stage::{self, Stage, frame};
 use super::table::Growth;
-use crate::support::camera;
-use crate::support::configuration::filter_name;
-use crate::support::gpu::Gpu;
-use crate::support::library::{LibraryOptions, LibraryTechnique, SceneCasters};
-use crate::support::mesh::Mesh;
-use crate::support::probe::Prober;
-use crate::support::scene::{Light, Scene};
-use crate::support::statistics::Spread;
-use crate::support::textbook::flat::DepthDrawer;
-use crate::support::textbook::meshes::{ViewUniform, WorldMeshes};
 
 /// Measures a frame against the number of cascades, for a camera that sees to the end of the ground.
 pub fn cascades(stage: &Stage<'_>) {
@@ -192,7 +192,7 @@ fn lamp_scene(gpu: &Gpu) -> Scene {
     let half = crowd::half_side(500);
     Scene {
         name: "crowd",
-        meshes: vec![Mesh::ground(0.0, half).joined(Crowd::new(gpu, 500).mesh)],
+        meshes: vec![Mesh::floor(0.0, half).joined(Crowd::new(gpu, 500).mesh)],
         light: Light::Point {
             position_world: DVec3::new(0.0, 8.0, 0.0),
             range: 4.0 * half,

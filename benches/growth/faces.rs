@@ -4,6 +4,10 @@
 use std::time::Instant;
 
 use glam::{DVec3, Mat4, Vec3};
+use shadow_support::gpu::Gpu;
+use shadow_support::measure::statistics::Spread;
+use shadow_support::mesh::Mesh;
+use shadow_support::random::Random;
 use wgpu_shadows::{
     Aabb, CasterPipeline, Coverage, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor,
     Revision, ShadowCaster, ShadowFrameDescriptor, ShadowScene, ShadowView,
@@ -12,10 +16,6 @@ use wgpu_shadows::{
 };
 
 use super::stage::Stage;
-use crate::support::gpu::Gpu;
-use crate::support::mesh::Mesh;
-use crate::support::random::Random;
-use crate::support::statistics::Spread;
 
 /// Is the number of texels per side: few, since filling them costs the same both ways.
 const MAP_SIZE: u32 = 32;

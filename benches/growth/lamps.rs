@@ -1,13 +1,13 @@
 //! Provides a field of point lights over a crowd.
 
 use glam::DVec3;
+use shadow_support::gpu::Gpu;
 use wgpu_shadows::{
     Coverage, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowCaster, ShadowScene,
 };
 
 use super::counts::Counts;
 use super::stage;
-use crate::support::gpu::Gpu;
 
 /// Is the golden angle in radians: successive lights on a spiral keep their distance.
 const TURN: f64 = 2.399_963;

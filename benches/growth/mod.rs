@@ -8,10 +8,8 @@
 //! table.rs      tables and exponents
 //! stage.rs      what the measurements share; crowd.rs, lamps.rs: many boxes and lights; counts.rs: draws and passes
 //! processor.rs  time and allocations on the CPU
-//! clock.rs      time on the device
 //! ```
 
-pub mod clock;
 pub mod counts;
 pub mod cpu;
 pub mod crowd;

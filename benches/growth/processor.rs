@@ -3,9 +3,8 @@
 use std::alloc::System;
 use std::time::Instant;
 
+use shadow_support::measure::statistics::Spread;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
-
-use crate::support::statistics::Spread;
 
 /// Counts what the program allocates.
 #[global_allocator]

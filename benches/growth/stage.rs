@@ -1,16 +1,16 @@
 //! Provides what the measurements of growth share.
 
 use glam::{DVec3, Vec3};
+use shadow_support::camera;
+use shadow_support::clock::Clock;
+use shadow_support::gpu::Gpu;
+use shadow_support::measure::statistics::Spread;
 use wgpu_shadows::{
     CameraView, Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter,
     ShadowCaster, ShadowFrameDescriptor, ShadowScene, report::ShadowReport,
 };
 
-use super::clock::Clock;
 use super::processor;
-use crate::support::camera;
-use crate::support::gpu::Gpu;
-use crate::support::statistics::Spread;
 
 /// Holds a device, its clock, and the number of repetitions.
 pub struct Stage<'a> {

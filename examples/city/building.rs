@@ -1,8 +1,7 @@
 //! Implements a building as a caster: one instance of a mesh that many share.
 
+use example_support::mesh::{Instance, Mesh};
 use wgpu_shadows::{Aabb, CasterPipeline, Revision, ShadowCaster, ShadowView};
-
-use crate::common::mesh::{Instance, Mesh};
 
 /// Is one instance in the town's buffer. wgpu's buffers and the library's pipelines are handles, and cheap to clone.
 pub struct Building {

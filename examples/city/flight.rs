@@ -1,8 +1,7 @@
 //! Moves the camera: along a street, then up and over the roofs.
 
+use example_support::camera::Camera;
 use glam::Vec3;
-
-use crate::common::camera::Camera;
 
 /// Returns the camera of frame `index` of `count`, for images of `size` pixels.
 pub fn camera(index: u32, count: u32, size: [u32; 2]) -> Camera {

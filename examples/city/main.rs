@@ -7,23 +7,19 @@
 //! ```text
 //! town.rs          streets, blocks, houses and towers
 //! plot.rs          what stands on one block
-//! random.rs        the same town every time
 //! building.rs      a building as a caster
 //! flight.rs        the motion of the camera
 //! sun.rs           the sun's shadows, and the images that they are in
 //! density.rs       how many texels a pixel covers
 //! table.rs         what the frames cost
 //! city.wgsl        the fragment stages
-//! ../common        device, meshes and Blinn-Phong
+//! ../support       meshes and Blinn-Phong
 //! ```
 
 mod building;
-#[path = "../common/mod.rs"]
-mod common;
 mod density;
 mod flight;
 mod plot;
-mod random;
 mod sun;
 mod table;
 mod town;
@@ -33,10 +29,10 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
+use example_support::{arguments, picture};
+use shadow_support::gpu::{Gpu, GpuRequest};
 use wgpu_shadows::ShadowCaster;
 
-use common::gpu::Gpu;
-use common::{arguments, picture};
 use sun::{Show, Sun};
 use table::Table;
 use town::Town;
@@ -63,7 +59,7 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
-    let gpu = Gpu::new()?;
+    let gpu = Gpu::new(&GpuRequest::default())?;
     picture::make_folder(&arguments.folder)?;
     let town = Town::new(&gpu.device)?;
     let casters: Vec<&dyn ShadowCaster> = town.buildings.iter().map(|b| b as _).collect();

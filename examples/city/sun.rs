@@ -3,17 +3,18 @@
 use std::error::Error;
 use std::time::{Duration, Instant};
 
+use example_support::camera::Camera;
+use example_support::phong::{Lighting, Phong, PhongDescriptor, Picture};
+use example_support::{map_picture, picture};
 use glam::{DVec3, Vec3};
+use shadow_support::gpu::Gpu;
+use shadow_support::readback;
 use wgpu_shadows::{
     Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, ShadowBindings,
     ShadowBindingsDescriptor, ShadowCaster, ShadowFrameDescriptor, ShadowScene, debug::DebugImage,
     report::ShadowReport,
 };
 
-use crate::common::camera::Camera;
-use crate::common::gpu::Gpu;
-use crate::common::phong::{Lighting, Phong, PhongDescriptor, Picture};
-use crate::common::{map_picture, picture};
 use crate::density::Density;
 use crate::town::Town;
 
@@ -118,7 +119,7 @@ impl Sun {
         let start = Instant::now();
         let frame = self.shadow_scene.frame(&ShadowFrameDescriptor {
             origin: DVec3::ZERO,
-            coverage: Coverage::Cameras(&[camera.for_shadows()]),
+            coverage: Coverage::Cameras(&[camera.view]),
             casters,
             receivers: &[town.ground],
         })?;
@@ -141,7 +142,10 @@ impl Sun {
             },
             town.batches(),
         );
-        Ok(picture::halved(&gpu.read(encoder, &target)?, DRAWN_SIZE))
+        Ok(picture::halved(
+            &readback::texels(gpu, encoder, &target)?,
+            DRAWN_SIZE,
+        ))
     }
 
     /// Returns how many texels the pixels of the last image cover, for the same `camera`.
@@ -167,7 +171,7 @@ impl Sun {
             },
             town.batches(),
         );
-        Ok(Density::of(&gpu.read(encoder, &target)?))
+        Ok(Density::of(&readback::texels(gpu, encoder, &target)?))
     }
 
     /// Draws the map of one cascade as the last frame left it.

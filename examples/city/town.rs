@@ -1,16 +1,16 @@
 //! Generates streets in a grid, blocks between them, and everything on them in one instance buffer.
 
+use example_support::mesh::{Instance, Mesh, Vertex, cube, sphere, vertex_buffer};
+use example_support::phong::Batch;
 use glam::{Vec2, Vec3};
+use shadow_support::random::Random;
 use wgpu_shadows::{
     Aabb, CasterPipeline, caster::CasterPipelineDescriptor, caster::CasterVertex,
     caster::ModelTransform, caster::PositionAttribute, error::CasterError,
 };
 
 use crate::building::Building;
-use crate::common::mesh::{Instance, Mesh, Vertex, cube, sphere, vertex_buffer};
-use crate::common::phong::Batch;
 use crate::plot::{self, BLOCK_SIDE, Part, Shape};
-use crate::random::Random;
 
 /// Is the distance from the middle of one street to the middle of the next.
 pub const STREET_SPACING: f32 = BLOCK_SIDE + 14.0;

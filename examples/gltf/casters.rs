@@ -1,15 +1,15 @@
 //! Implements the scene's `ShadowCaster`: one per instance, over shared buffers.
 
+use example_support::gltf_file::scene::{Mesh, Scene, Vertex};
 use glam::Vec3;
+use shadow_support::gpu::Gpu;
 use wgpu_shadows::{
     Aabb, CasterPipeline, Revision, ShadowCaster, ShadowView, caster::CasterPipelineDescriptor,
     caster::CasterShape, caster::CasterVertex, caster::ModelTransform, caster::PositionAttribute,
     caster::caster_shape, caster::is_closed_solid,
 };
 
-use crate::device::Gpu;
 use crate::geometry::{Draw, Geometry, INSTANCE_LAYOUT, VERTEX_LAYOUT};
-use crate::scene::{Mesh, Scene, Vertex};
 
 /// Is an instance of a mesh. The scene does not move, so its version never changes.
 pub struct SceneCaster<'a> {

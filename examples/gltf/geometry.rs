@@ -2,10 +2,9 @@
 
 use std::ops::Range;
 
+use example_support::gltf_file::scene::{Material, Picture, Scene, Vertex};
+use shadow_support::gpu::Gpu;
 use wgpu::util::DeviceExt;
-
-use crate::device::Gpu;
-use crate::scene::{Material, Picture, Scene, Vertex};
 
 /// Describes the vertices in slot 0.
 pub const VERTEX_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {

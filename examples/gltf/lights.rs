@@ -3,6 +3,8 @@
 
 use std::fmt::Write;
 
+use example_support::gltf_file::scene::{Light, LightKind, Scene};
+use shadow_support::gpu::Gpu;
 use wgpu_shadows::{
     Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniLight,
     ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowFrameDescriptor, ShadowMaps,
@@ -10,9 +12,7 @@ use wgpu_shadows::{
     pool::ShadowSlot, pool::SpotShadowPool, report::ShadowReport,
 };
 
-use crate::device::Gpu;
 use crate::options::Options;
-use crate::scene::{Light, LightKind, Scene};
 
 /// Is the number of lights that the shader loops over at most.
 pub const MAX_LIGHTS: usize = 256;

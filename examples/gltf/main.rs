@@ -6,34 +6,28 @@
 //!
 //! ```text
 //! options.rs     the command line
-//! load.rs        file to triangles, textures, lights and camera
-//! images.rs      its textures, decoded
-//! primitive.rs   one glTF primitive to a triangle list
-//! scene.rs       a scene once it is loaded
-//! device.rs      adapter, device, read-back
 //! geometry.rs    vertex, index and instance buffers, textures, draw calls
 //! casters.rs     the scene's ShadowCaster
 //! lights.rs      the scene's shadows, and the WGSL that samples them
 //! render.rs      pipelines and passes
 //! measure.rs     times of the passes
 //! report.rs      the report as JSON
+//! ../support     loads the file
 //! ```
 
 mod casters;
-mod device;
 mod geometry;
-mod images;
 mod lights;
-mod load;
 mod measure;
 mod options;
-mod primitive;
 mod render;
 mod report;
-mod scene;
 
 use std::error::Error;
 use std::process::ExitCode;
+
+use example_support::{gltf_file, picture};
+use shadow_support::gpu::Gpu;
 
 fn main() -> ExitCode {
     let options = match options::parse() {
@@ -50,11 +44,11 @@ fn main() -> ExitCode {
 }
 
 fn run(options: &options::Options) -> Result<(), Box<dyn Error>> {
-    let scene = load::load(&options.file, options.size, 0)?;
+    let scene = gltf_file::load(&options.file, options.size, 0)?;
     for note in &scene.notes {
         eprintln!("note: {note}");
     }
-    let gpu = device::Gpu::new(options.adapter)?;
+    let gpu = Gpu::new(&options.gpu())?;
     let geometry = geometry::Geometry::upload(&gpu, &scene)?;
     let casters = casters::scene_casters(&gpu, &scene, &geometry)?;
     let mut lights = lights::SceneLights::new(&gpu, &scene, options)?;
@@ -70,12 +64,12 @@ fn run(options: &options::Options) -> Result<(), Box<dyn Error>> {
         options,
     )?;
     if let Some(path) = &options.out {
-        device::save_png(path, &renderer.read_color(&gpu)?)?;
+        picture::save_image(path, &renderer.read_color(&gpu)?)?;
         println!("wrote {}", path.display());
     }
     if let Some(path) = &options.visibility {
-        let picture = renderer.visibility(&gpu, &scene, &geometry, &lights)?;
-        device::save_png(path, &picture)?;
+        let visibility = renderer.visibility(&gpu, &scene, &geometry, &lights)?;
+        picture::save_image(path, &visibility)?;
         println!("wrote {}", path.display());
     }
     let report = report::report(&gpu, &scene, &lights, &times);

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, ValueEnum};
+use shadow_support::gpu::GpuRequest;
 use wgpu_shadows::{Bias, CascadeSplit, Filter};
 
 /// Renders a glTF 2.0 file with shadows, offscreen, to a PNG.
@@ -81,6 +82,19 @@ impl Options {
     pub fn local_filter(&self) -> Filter {
         self.light_radius
             .map_or(self.filter, |light_size| Filter::Pcss { light_size })
+    }
+
+    /// Returns what the device must have.
+    pub fn gpu(&self) -> GpuRequest {
+        let wanted = match self.adapter {
+            Some(Backend::Vulkan) => wgpu::Backends::VULKAN,
+            Some(Backend::Gl) => wgpu::Backends::GL,
+            None => return GpuRequest::measuring(),
+        };
+        GpuRequest {
+            backends: vec![wanted],
+            ..GpuRequest::measuring()
+        }
     }
 }
 

@@ -1,11 +1,11 @@
 //! Creates the pipelines and records the passes of the image and of the visibility image.
 
+use example_support::gltf_file::scene::Scene;
 use image::DynamicImage;
+use shadow_support::{gpu::Gpu, readback};
 
-use crate::device::Gpu;
 use crate::geometry::{Geometry, INSTANCE_LAYOUT, VERTEX_LAYOUT};
 use crate::lights::{LightUniform, MAX_LIGHTS, SceneLights};
-use crate::scene::Scene;
 
 const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 const VISIBILITY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
@@ -199,7 +199,7 @@ impl Renderer {
     }
 
     pub fn read_color(&self, gpu: &Gpu) -> Result<DynamicImage, String> {
-        let rgba = gpu.read_texture(&self.color)?;
+        let rgba = readback::texels(gpu, gpu.encoder(), &self.color)?;
         image::RgbaImage::from_raw(self.size[0], self.size[1], rgba)
             .map(DynamicImage::ImageRgba8)
             .ok_or_else(|| "the picture came back with the wrong size".to_owned())
@@ -215,7 +215,7 @@ impl Renderer {
     ) -> Result<DynamicImage, String> {
         let picture = target(&gpu.device, VISIBILITY_FORMAT, self.size, 1);
         let depth = view(&target(&gpu.device, DEPTH_FORMAT, self.size, 1));
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let mut encoder = gpu.encoder();
         let attachment = wgpu::RenderPassColorAttachment {
             view: &view(&picture),
             depth_slice: None,
@@ -233,8 +233,7 @@ impl Renderer {
             geometry,
             lights,
         );
-        gpu.queue.submit([encoder.finish()]);
-        let grey = gpu.read_texture(&picture)?;
+        let grey = readback::texels(gpu, encoder, &picture)?;
         image::GrayImage::from_raw(self.size[0], self.size[1], grey)
             .map(DynamicImage::ImageLuma8)
             .ok_or_else(|| "the picture came back with the wrong size".to_owned())

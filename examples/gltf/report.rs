@@ -1,12 +1,12 @@
 //! Writes the report of a run, as JSON.
 
+use example_support::gltf_file::scene::Scene;
 use serde_json::{Value, json};
+use shadow_support::gpu::Gpu;
 use wgpu_shadows::report::ShadowReport;
 
-use crate::device::Gpu;
 use crate::lights::SceneLights;
 use crate::measure::Times;
-use crate::scene::Scene;
 
 /// Returns scene, adapter, what each set of maps did in the last frame, and times.
 pub fn report(gpu: &Gpu, scene: &Scene, lights: &SceneLights, times: &Times) -> Value {
@@ -25,8 +25,8 @@ pub fn report(gpu: &Gpu, scene: &Scene, lights: &SceneLights, times: &Times) -> 
         .map(|(name, report, served)| maps_report(name, report, &served))
         .collect();
     json!({
-        "adapter": gpu.adapter_info.name,
-        "backend": gpu.adapter_info.backend.to_string(),
+        "adapter": gpu.adapter.name,
+        "backend": gpu.adapter.backend.to_string(),
         "instances": scene.instances.len(),
         "triangles": scene.triangle_count(),
         "lights": described,

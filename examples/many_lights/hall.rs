@@ -1,15 +1,13 @@
 //! Builds a hall of 24 by 14 by 6 metres: floor and walls as flat meshes, a ceiling with a skylight, columns, and
 //! objects.
 
+use example_support::camera::Camera;
+use example_support::mesh::{Instance, Object, Vertex, cube, sphere, square};
 use glam::{Mat4, Quat, Vec3};
 use wgpu_shadows::{
     CasterPipeline, MeshCaster, ShadowCaster, caster::CasterPipelineDescriptor,
-    caster::CasterVertex, caster::MeshCasterDescriptor, caster::MeshIndices,
-    caster::ModelTransform, caster::PositionAttribute, error::CasterError,
+    caster::CasterVertex, caster::ModelTransform, caster::PositionAttribute, error::CasterError,
 };
-
-use crate::common::camera::Camera;
-use crate::common::mesh::{Instance, Object, Vertex, cube, sphere, square};
 
 /// Are half the hall's extent along x and z, and its height.
 const HALF_LENGTH: f32 = 12.0;
@@ -76,7 +74,7 @@ impl Hall {
         )?;
         let casters = objects
             .iter()
-            .map(|object| caster(device, &pipeline, object))
+            .map(|object| object.caster(device, &pipeline))
             .collect::<Result<_, _>>()?;
         Ok(Self { objects, casters })
     }
@@ -169,23 +167,3 @@ const BALLS: [([f32; 3], f32); 6] = [
     ([-0.9, 0.0, -3.0], 0.45),
     ([-9.4, 0.0, -0.8], 0.55),
 ];
-
-fn caster(
-    device: &wgpu::Device,
-    pipeline: &CasterPipeline,
-    object: &Object,
-) -> Result<MeshCaster, CasterError> {
-    MeshCaster::new(
-        device,
-        &MeshCasterDescriptor {
-            label: Some("hall caster"),
-            pipeline,
-            vertices: &object.mesh.vertices,
-            indices: MeshIndices::None {
-                vertices: 0..object.mesh.vertex_count,
-            },
-            bounds_model: object.mesh.bounds_model,
-            render_from_model: object.render_from_model,
-        },
-    )
-}

@@ -12,11 +12,9 @@
 //! painter.rs       the images
 //! table.rs         what a frame cost
 //! hall.wgsl        the fragment stage: loops over the lights
-//! ../common        device, meshes and Blinn-Phong
+//! ../support       meshes and Blinn-Phong
 //! ```
 
-#[path = "../common/mod.rs"]
-mod common;
 mod hall;
 mod lights;
 mod painter;
@@ -28,9 +26,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
+use example_support::{arguments, picture};
+use shadow_support::gpu::{Gpu, GpuRequest};
 
-use common::gpu::Gpu;
-use common::{arguments, picture};
 use hall::Hall;
 use lights::Lights;
 use painter::Painter;
@@ -59,7 +57,7 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
-    let gpu = Gpu::new()?;
+    let gpu = Gpu::new(&GpuRequest::default())?;
     picture::make_folder(&arguments.folder)?;
     let hall = Hall::new(&gpu.device)?;
     let casters = hall.casters();

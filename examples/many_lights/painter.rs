@@ -2,15 +2,16 @@
 
 use std::error::Error;
 
+use example_support::camera::Camera;
+use example_support::mesh::{Instance, Mesh, sphere, vertex_buffer};
+use example_support::phong::{Batch, Lighting, Phong, PhongDescriptor, Picture};
+use example_support::picture::halved;
 use glam::{Mat4, Vec3};
+use shadow_support::gpu::Gpu;
+use shadow_support::readback;
 use wgpu_shadows::ShadowBindings;
 
 use crate::SIZE;
-use crate::common::camera::Camera;
-use crate::common::gpu::Gpu;
-use crate::common::mesh::{Instance, Mesh, sphere, vertex_buffer};
-use crate::common::phong::{Batch, Lighting, Phong, PhongDescriptor, Picture};
-use crate::common::picture::halved;
 use crate::hall::Hall;
 use crate::lights::{LAMPS, LightUniform, Lights, SPOTS, TOWARD_SUN};
 use crate::shadows::Shadows;
@@ -122,6 +123,9 @@ impl Painter {
         };
         let batches = hall.objects().iter().map(Batch::from).chain([bulbs]);
         self.phong.draw(gpu, &mut encoder, &picture, batches);
-        Ok(halved(&gpu.read(encoder, &target)?, DRAWN_SIZE))
+        Ok(halved(
+            &readback::texels(gpu, encoder, &target)?,
+            DRAWN_SIZE,
+        ))
     }
 }

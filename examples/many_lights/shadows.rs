@@ -2,6 +2,7 @@
 
 use std::error::Error;
 
+use example_support::camera::Camera;
 use glam::DVec3;
 use wgpu_shadows::{
     Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, ShadowBindings,
@@ -10,7 +11,6 @@ use wgpu_shadows::{
     pool::SpotShadowPool, report::ShadowReport,
 };
 
-use crate::common::camera::Camera;
 use crate::lights::{LAMPS, Lights, SPOTS, TOWARD_SUN};
 
 pub struct Shadows {
@@ -88,7 +88,7 @@ impl Shadows {
         // One frame serves all lights: the methods of the casters are called once.
         let frame = self.scene.frame(&ShadowFrameDescriptor {
             origin: DVec3::ZERO,
-            coverage: Coverage::Cameras(&[camera.for_shadows()]),
+            coverage: Coverage::Cameras(&[camera.view]),
             casters,
             receivers: &[],
         })?;

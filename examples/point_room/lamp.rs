@@ -2,7 +2,11 @@
 
 use std::error::Error;
 
+use example_support::map_picture;
+use example_support::phong::{Batch, Lighting, Phong, PhongDescriptor, Picture};
 use glam::{DVec3, Vec3};
+use shadow_support::gpu::Gpu;
+use shadow_support::readback;
 use wgpu_shadows::{
     Coverage, Filter, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowBindings,
     ShadowBindingsDescriptor, ShadowCaster, ShadowError, ShadowFrameDescriptor, ShadowScene,
@@ -10,9 +14,6 @@ use wgpu_shadows::{
 };
 
 use crate::SIZE;
-use crate::common::gpu::Gpu;
-use crate::common::map_picture;
-use crate::common::phong::{Batch, Lighting, Phong, PhongDescriptor, Picture};
 use crate::room::{self, Room};
 
 /// Is the number of texels per side of each face.
@@ -84,7 +85,7 @@ impl Lamp {
     ) -> Result<Vec<u8>, Box<dyn Error>> {
         let camera = room::camera(SIZE);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let cameras = [camera.for_shadows()];
+        let cameras = [camera.view];
         let seen = Coverage::Cameras(&cameras);
         self.record(&mut encoder, room, place, seen, casters)?;
 
@@ -108,7 +109,7 @@ impl Lamp {
             },
             room.objects().chain([&bulb]).map(Batch::from),
         );
-        gpu.read(encoder, &target)
+        Ok(readback::texels(gpu, encoder, &target)?)
     }
 
     /// Fills all faces, whatever a camera would see of them.

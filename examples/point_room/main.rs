@@ -12,11 +12,9 @@
 //! lamp.rs          the light's shadows, and the images that they are in
 //! line.rs          what a frame cost, in one line
 //! room.wgsl        the fragment stage
-//! ../common        device, meshes and Blinn-Phong
+//! ../support       meshes and Blinn-Phong
 //! ```
 
-#[path = "../common/mod.rs"]
-mod common;
 mod lamp;
 mod line;
 mod room;
@@ -26,11 +24,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
+use example_support::{arguments, picture};
 use glam::Vec3;
+use shadow_support::gpu::{Gpu, GpuRequest};
 use wgpu_shadows::{Filter, ShadowCaster, debug::DebugImage};
 
-use common::gpu::Gpu;
-use common::{arguments, picture};
 use lamp::Lamp;
 use room::Room;
 
@@ -56,7 +54,7 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
-    let gpu = Gpu::new()?;
+    let gpu = Gpu::new(&GpuRequest::default())?;
     picture::make_folder(&arguments.folder)?;
     let room = Room::new(&gpu.device)?;
     let cubes = room.cubes();

@@ -2,15 +2,13 @@
 
 use std::f32::consts::PI;
 
+use example_support::camera::Camera;
+use example_support::mesh::{Instance, Object, Vertex, cube, inside_out, sphere};
 use glam::{Mat4, Quat, Vec3};
 use wgpu_shadows::{
     Aabb, CasterPipeline, MeshCaster, ShadowCaster, caster::CasterPipelineDescriptor,
-    caster::CasterVertex, caster::MeshCasterDescriptor, caster::MeshIndices,
-    caster::ModelTransform, caster::PositionAttribute, error::CasterError,
+    caster::CasterVertex, caster::ModelTransform, caster::PositionAttribute, error::CasterError,
 };
-
-use crate::common::camera::Camera;
-use crate::common::mesh::{Instance, Object, Vertex, cube, inside_out, sphere};
 
 /// Is half the side of the room.
 const HALF: f32 = 5.0;
@@ -56,9 +54,9 @@ impl Room {
         Ok(Self {
             casters: cubes
                 .iter()
-                .map(|cube| caster(device, &pipeline, cube))
+                .map(|cube| cube.caster(device, &pipeline))
                 .collect::<Result<_, _>>()?,
-            wall_caster: caster(device, &pipeline, &walls)?,
+            wall_caster: walls.caster(device, &pipeline)?,
             walls,
             cubes,
         })
@@ -125,26 +123,6 @@ fn caster_pipeline(device: &wgpu::Device) -> Result<CasterPipeline, CasterError>
                 model: ModelTransform::INSTANCE_MATRIX,
             },
             ..Default::default()
-        },
-    )
-}
-
-fn caster(
-    device: &wgpu::Device,
-    pipeline: &CasterPipeline,
-    object: &Object,
-) -> Result<MeshCaster, CasterError> {
-    MeshCaster::new(
-        device,
-        &MeshCasterDescriptor {
-            label: Some("room caster"),
-            pipeline,
-            vertices: &object.mesh.vertices,
-            indices: MeshIndices::None {
-                vertices: 0..object.mesh.vertex_count,
-            },
-            bounds_model: object.mesh.bounds_model,
-            render_from_model: object.render_from_model,
         },
     )
 }

@@ -14,11 +14,9 @@
 //! truth.rs            how far an image is from what is truly lit
 //! scene.wgsl          the fragment stages
 //! out_of_range.wgsl   the tutorial's mistake
-//! ../common           device, meshes and Blinn-Phong
+//! ../support          meshes and Blinn-Phong
 //! ```
 
-#[path = "../common/mod.rs"]
-mod common;
 mod lookup;
 mod painter;
 mod rays;
@@ -32,13 +30,13 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
+use example_support::{arguments, map_picture, picture};
 use glam::DVec3;
+use shadow_support::gpu::{Gpu, GpuRequest};
 use wgpu_shadows::{
     DirectionalShadow, ShadowCaster, ShadowFrameDescriptor, ShadowScene, debug::DebugImage,
 };
 
-use common::gpu::Gpu;
-use common::{arguments, map_picture, picture};
 use lookup::Lookup;
 use scene::Scene;
 use steps::{Show, Step};
@@ -57,7 +55,7 @@ fn main() -> ExitCode {
 }
 
 fn run(folder: &Path) -> Result<(), Box<dyn Error>> {
-    let gpu = Gpu::new()?;
+    let gpu = Gpu::new(&GpuRequest::default())?;
     picture::make_folder(folder)?;
     let scene = Scene::new(&gpu.device);
     let mut figures = Vec::new();
@@ -84,7 +82,7 @@ fn draw(gpu: &Gpu, scene: &Scene, step: &Step, path: &Path) -> Result<String, Bo
     let mut shadow_scene = ShadowScene::new();
     let frame = shadow_scene.frame(&ShadowFrameDescriptor {
         origin: DVec3::ZERO,
-        coverage: step.region.coverage(&[camera.for_shadows()]),
+        coverage: step.region.coverage(&[camera.view]),
         casters: &casters,
         receivers: &[],
     })?;

@@ -3,11 +3,12 @@
 
 use std::error::Error;
 
+use example_support::camera::Camera;
+use example_support::phong::{Batch, Lighting, Phong, PhongDescriptor, Picture};
 use glam::Vec3;
+use shadow_support::gpu::Gpu;
+use shadow_support::readback;
 
-use crate::common::camera::Camera;
-use crate::common::gpu::Gpu;
-use crate::common::phong::{Batch, Lighting, Phong, PhongDescriptor, Picture};
 use crate::lookup::{GROUP, Lookup};
 use crate::scene::Scene;
 
@@ -87,9 +88,9 @@ pub fn paint(
     let picture = draw(&PICTURE);
     let visibility = draw(&VISIBILITY);
 
-    let picture = gpu.read(encoder, &picture)?;
+    let picture = readback::texels(gpu, encoder, &picture)?;
     let encoder = gpu.device.create_command_encoder(&Default::default());
-    let visibility = gpu.read(encoder, &visibility)?;
+    let visibility = readback::texels(gpu, encoder, &visibility)?;
     Ok(Painted {
         picture,
         visibility: visibility

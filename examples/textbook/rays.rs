@@ -1,8 +1,8 @@
 //! Holds the scene as rays see it: three boxes and a floor, in double precision.
 
+use example_support::mesh::Object;
 use glam::{DMat4, DVec3};
 
-use crate::common::mesh::Object;
 use crate::scene::Scene;
 
 /// Is a ray through the scene: `origin + t * direction`.

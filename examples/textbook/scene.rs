@@ -1,13 +1,12 @@
 //! Builds the tutorial's scene: a floor of 50 by 50, three cubes, and a sun that shines from (-2, 4, -1) to the origin.
 
+use example_support::mesh::{Instance, Object, Vertex, cube, square};
 use glam::{Mat4, Quat, Vec3};
 use wgpu_shadows::{
     Aabb, CameraView, CasterPipeline, Coverage, DirectionalLight, MeshCaster,
-    caster::CasterPipelineDescriptor, caster::CasterVertex, caster::MeshCasterDescriptor,
-    caster::MeshIndices, caster::ModelTransform, caster::PositionAttribute, error::CasterError,
+    caster::CasterPipelineDescriptor, caster::CasterVertex, caster::ModelTransform,
+    caster::PositionAttribute, error::CasterError,
 };
-
-use crate::common::mesh::{Instance, Object, Vertex, cube, square};
 
 /// Selects what a step's map covers.
 #[derive(Clone, Copy)]
@@ -104,19 +103,7 @@ impl Scene {
             },
         )?;
         self.objects()
-            .map(|object| {
-                let descriptor = MeshCasterDescriptor {
-                    label: Some("textbook caster"),
-                    pipeline: &pipeline,
-                    vertices: &object.mesh.vertices,
-                    indices: MeshIndices::None {
-                        vertices: 0..object.mesh.vertex_count,
-                    },
-                    bounds_model: object.mesh.bounds_model,
-                    render_from_model: object.render_from_model,
-                };
-                MeshCaster::new(device, &descriptor)
-            })
+            .map(|object| object.caster(device, &pipeline))
             .collect()
     }
 

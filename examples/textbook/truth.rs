@@ -3,10 +3,10 @@
 use std::collections::BTreeSet;
 use std::fmt;
 
+use example_support::camera::Camera;
 use glam::{DMat4, DVec3, Mat4};
 use wgpu_shadows::ShadowView;
 
-use crate::common::camera::Camera;
 use crate::rays::{Ray, World};
 use crate::scene::Scene;
 

@@ -1,8 +1,7 @@
 //! Defines the cameras.
 
+use example_support::camera::Camera;
 use glam::Vec3;
-
-use crate::common::camera::Camera;
 
 /// Selects a camera.
 #[derive(Clone, Copy)]

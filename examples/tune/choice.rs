@@ -1,9 +1,10 @@
 //! Chooses a configuration.
 
+use shadow_support::measure::subject::Sample;
+use shadow_support::scene::Light;
+
 use crate::contest;
 use crate::paste;
-use crate::support::measure::Sample;
-use crate::support::scene::Light;
 
 /// Is the factor by which errors may exceed the least and still count as good: a smaller difference is not worth its
 /// cost.

@@ -2,15 +2,15 @@
 
 use std::error::Error;
 
+use shadow_support::measure::configuration::{Configuration, Method};
+use shadow_support::measure::floor::Floors;
+use shadow_support::measure::parallel;
+use shadow_support::measure::prober::Prober;
+use shadow_support::measure::subject::{Sample, Subject};
+use shadow_support::scene::{Light, Scene};
 use wgpu_shadows::{Bias, Filter};
 
 use crate::options::Options;
-use crate::support::configuration::{Configuration, Method};
-use crate::support::floor::Floors;
-use crate::support::measure::{Sample, Subject};
-use crate::support::parallel;
-use crate::support::probe::Prober;
-use crate::support::scene::{Light, Scene};
 
 /// Is the number of timed runs of each configuration, each next to one of the tutorial's.
 const REPEATS: u32 = 3;

@@ -14,29 +14,20 @@
 //! choice.rs            which to take
 //! paste.rs             its Rust
 //! table.rs             all of them as a table, CSV, chart and image
-//! ../gltf              loads the file
-//! ../../benches/support    casts rays, measures, draws charts
+//! ../support           loads the file
+//! ../../tests/support  casts rays, measures, draws charts
 //! ```
 
-#[path = "../common/arguments.rs"]
-mod arguments;
+use example_support::arguments;
+use shadow_support::gpu::{Gpu, GpuRequest};
+use shadow_support::measure::prober::Prober;
+use shadow_support::measure::subject::Subject;
+
 mod choice;
 mod contest;
-#[path = "../gltf/images.rs"]
-mod images;
-#[allow(dead_code, reason = "the gltf example uses the rest")]
-#[path = "../gltf/load.rs"]
-mod load;
 mod options;
 mod paste;
-#[path = "../gltf/primitive.rs"]
-mod primitive;
-#[allow(dead_code, reason = "the gltf example uses the rest")]
-#[path = "../gltf/scene.rs"]
-mod scene;
 mod subject;
-#[path = "../../benches/support/mod.rs"]
-mod support;
 mod table;
 
 use std::error::Error;
@@ -45,9 +36,6 @@ use std::time::Instant;
 
 use choice::Choice;
 use options::Options;
-use support::gpu::Gpu;
-use support::measure::Subject;
-use support::probe::Prober;
 
 fn main() -> ExitCode {
     arguments::run("tune", run)
@@ -58,7 +46,7 @@ fn run(options: Options) -> Result<(), Box<dyn Error>> {
     // This comes before the long work, so that a wrong folder does not cost it.
     std::fs::create_dir_all(&options.out)
         .map_err(|error| format!("cannot make {}: {error}", options.out.display()))?;
-    let gpu = Gpu::new()?;
+    let gpu = Gpu::new(&GpuRequest::measuring())?;
     println!("{}", gpu.describe());
     let start = Instant::now();
     let mut prober = Prober::new(&gpu);

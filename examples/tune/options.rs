@@ -3,8 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Parser;
-
-use crate::support::pixels::Effort;
+use shadow_support::measure::pixels::Effort;
 
 /// Finds the shadow settings that suit a scene: errors against ray-traced truth, costs, and the descriptor to paste.
 #[derive(Parser, Debug)]

@@ -1,7 +1,7 @@
 //! Writes a configuration as the Rust that describes it to the library.
 
-use crate::support::configuration::{Configuration, Method};
-use crate::support::scene::Light;
+use shadow_support::measure::configuration::{Configuration, Method};
+use shadow_support::scene::Light;
 
 /// Returns the descriptor of a light's shadows; a configuration of the tutorial's method has none.
 pub fn descriptor(configuration: &Configuration, light: &Light) -> String {

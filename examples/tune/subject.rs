@@ -2,14 +2,16 @@
 
 use std::path::Path;
 
-use glam::{DVec3, Vec3};
+use example_support::gltf_file;
+use example_support::gltf_file::scene::{
+    Instance, Light as FileLight, LightKind, Scene as FileScene,
+};
+use glam::{DVec3, Mat4, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::scene::{Light, Scene};
+use shadow_support::scenes;
 
-use crate::load;
 use crate::options::Options;
-use crate::scene::{Light as FileLight, LightKind, Scene as FileScene};
-use crate::support::mesh::Mesh;
-use crate::support::scene::{Light, Scene};
-use crate::support::scenes;
 
 /// Returns the scene that the options name.
 pub fn scene(options: &Options) -> Result<Scene, String> {
@@ -28,7 +30,7 @@ pub fn scene(options: &Options) -> Result<Scene, String> {
 }
 
 fn from_file(path: &Path, options: &Options) -> Result<Scene, String> {
-    let file = load::load(path, options.picture_size(), options.camera)?;
+    let file = gltf_file::load(path, options.picture_size(), options.camera)?;
     let count = file.lights.len();
     let light = *file.lights.get(options.light).ok_or(format!(
         "there is no light {}: {} has {count}",
@@ -56,8 +58,10 @@ fn from_file(path: &Path, options: &Options) -> Result<Scene, String> {
     if !corners().all(|corner| corner.is_finite()) {
         return Err(format!("{} is too large for f32", path.display()));
     }
-    let has_area = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).try_normalize().is_some();
-    if !meshes.iter().flat_map(Mesh::triangles).any(has_area) {
+    let mut triangles = meshes
+        .iter()
+        .flat_map(|mesh| mesh.triangles(&Mat4::IDENTITY));
+    if !triangles.any(|triangle| triangle.try_normal().is_some()) {
         return Err(format!("{} has no triangle with an area", path.display()));
     }
     let farthest = corners().map(|corner| corner.distance(light.position_render));
@@ -74,7 +78,7 @@ fn from_file(path: &Path, options: &Options) -> Result<Scene, String> {
 
 /// Returns every instance with its transform multiplied out, so that rays and device meet the same corners to the bit.
 fn baked(file: &FileScene) -> Vec<Mesh> {
-    let bake = |instance: &crate::scene::Instance| {
+    let bake = |instance: &Instance| {
         let mesh = &file.meshes[instance.mesh];
         let place = instance.render_from_model.as_dmat4();
         let corner = |position: [f32; 3]| {

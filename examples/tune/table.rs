@@ -5,13 +5,14 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
+use shadow_support::measure::chart::{self, Point, Words};
+use shadow_support::measure::configuration::Configuration;
+use shadow_support::measure::prober::Prober;
+use shadow_support::measure::report;
+use shadow_support::measure::subject::{Sample, Subject};
+use shadow_support::scene::Light;
+
 use crate::choice::Choice;
-use crate::support::chart::{self, Point, Words};
-use crate::support::configuration::Configuration;
-use crate::support::measure::{Sample, Subject};
-use crate::support::probe::Prober;
-use crate::support::report;
-use crate::support::scene::Light;
 
 /// Prints what the errors are measured over.
 pub fn print_pixels(subject: &Subject<'_>, [width, height]: [u32; 2]) {

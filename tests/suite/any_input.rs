@@ -2,19 +2,21 @@
 //! error, never panics, and causes no error of the device.
 
 use glam::{DVec3, Mat4, Vec3, Vec4};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
 use wgpu_shadows::{
     Aabb, CameraView, CascadeSplit, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, ShadowCaster,
 };
 
-use crate::support::camera::Camera;
-use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};
-use crate::support::gpu::gpu;
-use crate::support::probe::{Point, SunProbe, record};
-use crate::support::random::Random;
-use crate::support::report::assert_whole;
-use crate::support::scene::{Mesh, default_pipeline};
-use crate::support::watched::Watched;
+use crate::fixtures::frames::{Coverage, DirectionalFrame, RecordFrame};
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::probe::{SunProbe, record};
+use crate::fixtures::report::assert_whole;
+use crate::fixtures::scene::default_pipeline;
+use crate::fixtures::watched::Watched;
 
 /// Draws numbers, of which one in `tameness` is unusual and one more has random bits.
 struct Numbers {

@@ -9,10 +9,10 @@ use std::collections::BTreeSet;
 use image::RgbaImage;
 use wgpu_shadows::{Bias, Filter, shader};
 
-use crate::support::child;
-use crate::support::floor::{draw, own_layout, picture, pipeline, stages};
-use crate::support::gpu::{Gpu, vulkan};
-use crate::support::lights::{Kind, Light, stage};
+use crate::fixtures::child;
+use crate::fixtures::floor::{draw, own_layout, picture, pipeline, stages};
+use crate::fixtures::gpu::{Gpu, vulkan};
+use crate::fixtures::lights::{Kind, Light, stage};
 
 type Set = Vec<Kind>;
 

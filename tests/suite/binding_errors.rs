@@ -1,15 +1,15 @@
 //! Tests what `ShadowBindings`, `shader::compose` and `DebugView` refuse: each error is provoked, compared as a value,
 //! and read as a message.
 
+use shadow_support::readback;
 use wgpu_shadows::{
     DirectionalShadow, DirectionalShadowDescriptor, ShadowBindings, ShadowBindingsDescriptor,
     debug::DebugImage, debug::DebugView, error::BindingsError, error::DebugViewError, shader,
 };
 
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::picture::{color_pass, color_target};
-use crate::support::readback;
-use crate::support::wgsl;
+use crate::fixtures::gpu::{Gpu, gpu};
+use crate::fixtures::picture::{color_pass, color_target};
+use crate::fixtures::wgsl;
 
 fn tiny_sun(gpu: &Gpu, cascades: u32) -> DirectionalShadow {
     let descriptor = DirectionalShadowDescriptor {

@@ -2,18 +2,20 @@
 //! reference.
 
 use glam::{DVec3, Vec3};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::readback;
 use wgpu_shadows::reference::{self, DepthLayer};
 use wgpu_shadows::{
     Bias, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter, ShadowBindings,
     ShadowBindingsDescriptor,
 };
 
-use crate::support::camera::Camera;
-use crate::support::frames::{Coverage, DirectionalFrame};
-use crate::support::gpu::gpu;
-use crate::support::probe::{Point, SunProbe, record};
-use crate::support::readback;
-use crate::support::scene::{Mesh, Scene};
+use crate::fixtures::frames::{Coverage, DirectionalFrame};
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::probe::{SunProbe, record};
+use crate::fixtures::scene::Scene;
 
 const MAP_SIZE: u32 = 128;
 

@@ -1,18 +1,19 @@
 //! Tests `DebugView::draw_cascades`: each pixel has the colour of the view that covers what is seen there.
 
 use glam::{DVec3, DVec4, Mat4};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
 use wgpu_shadows::{
     DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, debug::DebugView,
     error::DebugViewError, error::DeviceError, reference,
 };
 
-use crate::support::camera::Camera;
-use crate::support::frames::{Coverage, DirectionalFrame};
-use crate::support::gpu::{Gpu, gpu, vulkan};
-use crate::support::picture::{COLOR, color_target};
-use crate::support::probe::record;
-use crate::support::readback;
-use crate::support::scene::{Mesh, Scene};
+use crate::fixtures::frames::{Coverage, DirectionalFrame};
+use crate::fixtures::gpu::{gpu, vulkan};
+use crate::fixtures::picture::{COLOR, color_target};
+use crate::fixtures::probe::record;
+use crate::fixtures::scene::Scene;
+use crate::fixtures::tint::{cleared, tint};
 
 const SIZE: u32 = 96;
 
@@ -23,73 +24,6 @@ const TINTS: [[f64; 3]; 4] = [
     [0.35, 0.5, 1.0],
     [0.6, 0.6, 0.6],
 ];
-
-/// Begins a pass over `target` that clears it to `color`, or only the depth of `depth` to `value`.
-fn cleared<'a>(
-    encoder: &'a mut wgpu::CommandEncoder,
-    target: Option<&wgpu::TextureView>,
-    depth: Option<(&wgpu::TextureView, f32)>,
-) -> wgpu::RenderPass<'a> {
-    let color = target.map(|view| wgpu::RenderPassColorAttachment {
-        view,
-        depth_slice: None,
-        resolve_target: None,
-        ops: wgpu::Operations {
-            load: wgpu::LoadOp::Clear(wgpu::Color::WHITE),
-            store: wgpu::StoreOp::Store,
-        },
-    });
-    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        color_attachments: &[color][..usize::from(target.is_some())],
-        depth_stencil_attachment: depth.map(|(view, value)| {
-            wgpu::RenderPassDepthStencilAttachment {
-                view,
-                depth_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(value),
-                    store: wgpu::StoreOp::Store,
-                }),
-                stencil_ops: None,
-            }
-        }),
-        ..Default::default()
-    })
-}
-
-/// Returns the tint of an image whose depth is `depth` everywhere.
-fn tint(gpu: &Gpu, shadow: &DirectionalShadow, camera: &Camera, depth: f32) -> image::RgbaImage {
-    let view = DebugView::new(&gpu.device, COLOR).expect("a format for pictures");
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("depth"),
-        size: wgpu::Extent3d {
-            width: SIZE,
-            height: SIZE,
-            depth_or_array_layers: 1,
-        },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Depth32Float,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    });
-    let depth_view = texture.create_view(&Default::default());
-    let target = color_target(gpu, SIZE);
-    let target_view = target.create_view(&Default::default());
-    let clip_from_render = camera.clip_from_view() * camera.view_from_render();
-    let mut encoder = gpu.encoder();
-    drop(cleared(&mut encoder, None, Some((&depth_view, depth))));
-    let mut pass = cleared(&mut encoder, Some(&target_view), None);
-    view.draw_cascades(
-        &mut pass,
-        shadow.maps(),
-        &depth_view,
-        clip_from_render.inverse().as_mat4(),
-    )
-    .expect("a depth texture");
-    drop(pass);
-    gpu.submit(encoder);
-    readback::rgba8(gpu, &target)
-}
 
 /// On planes at several depths, every pixel has the colour of the first cascade that covers its position in f64.
 /// Positions within `1e-3` of their own magnitude of a border are undecided: matrices of f32 err by 1e-6 of a distance
@@ -132,7 +66,7 @@ fn pixels_have_the_colours_of_their_cascades() {
         let along = camera.pose.eye - camera.pose.axes.z_axis * distance;
         let clip = camera.clip_from_view() * camera.view_from_render() * along.extend(1.0);
         let depth = (clip.z / clip.w) as f32;
-        let image = tint(gpu, &shadow, &camera, depth);
+        let image = tint(gpu, shadow.maps(), &camera, SIZE, depth);
         for (x, y, pixel) in image.enumerate_pixels() {
             let ndc = |pixel: u32| (f64::from(pixel) + 0.5) / f64::from(SIZE) * 2.0 - 1.0;
             let place = render_from_clip * DVec4::new(ndc(x), -ndc(y), f64::from(depth), 1.0);
@@ -166,7 +100,7 @@ fn pixels_have_the_colours_of_their_cascades() {
     assert!(seen.iter().all(|count| *count > 200), "{seen:?}");
     // Where nothing is drawn, by either depth convention, the image stays as it is.
     for sky in [0.0, 1.0] {
-        let image = tint(gpu, &shadow, &camera, sky);
+        let image = tint(gpu, shadow.maps(), &camera, SIZE, sky);
         assert!(image.pixels().all(|pixel| pixel.0 == [255; 4]), "{sky}");
     }
 }

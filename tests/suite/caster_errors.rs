@@ -5,7 +5,7 @@ use wgpu_shadows::{
     caster::PositionAttribute, error::CasterError, error::DeviceError, error::DeviceRefusal,
 };
 
-use crate::support::gpu::gpu;
+use crate::fixtures::gpu::gpu;
 
 fn pipeline(descriptor: &CasterPipelineDescriptor<'_>) -> Result<(), CasterError> {
     CasterPipeline::new(&gpu().device, descriptor).map(|_| ())

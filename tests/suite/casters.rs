@@ -2,6 +2,8 @@
 //! of the map.
 
 use glam::{DVec3, Mat4, Quat, Vec3, Vec4};
+use shadow_support::mesh::Mesh;
+use shadow_support::readback;
 use wgpu::{BufferUsages, VertexFormat};
 use wgpu_shadows::{
     Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
@@ -10,11 +12,10 @@ use wgpu_shadows::{
     caster::PositionAttribute,
 };
 
-use crate::support::frames::{Coverage, DirectionalFrame};
-use crate::support::gpu::{Gpu, gpu, vulkan};
-use crate::support::probe::record;
-use crate::support::readback;
-use crate::support::scene::Mesh;
+use crate::fixtures::frames::{Coverage, DirectionalFrame};
+use crate::fixtures::gpu::{Gpu, gpu, vulkan};
+use crate::fixtures::probe::record;
+use crate::fixtures::slabs::assert_same;
 
 const MAP_SIZE: u32 = 64;
 
@@ -55,12 +56,6 @@ fn depths(gpu: &Gpu, caster: &dyn ShadowCaster) -> Vec<f32> {
 
 fn drawn(depths: &[f32]) -> usize {
     depths.iter().filter(|depth| **depth > 0.0).count()
-}
-
-/// Asserts that two maps are equal; a failure prints a number instead of two maps.
-fn assert_same(found: &[f32], wanted: &[f32], what: &str) {
-    let differing = found.iter().zip(wanted).filter(|(a, b)| a != b).count();
-    assert_eq!(differing, 0, "{what}: texels differ");
 }
 
 fn pipeline(gpu: &Gpu, descriptor: &CasterPipelineDescriptor<'_>) -> CasterPipeline {

@@ -1,17 +1,17 @@
 //! Tests which meshes are closed solids, and that the back faces of these make no difference to any map.
 
 use glam::{DVec3, Mat4, Quat, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::random::Random;
+use shadow_support::readback;
 use wgpu_shadows::{
     CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniLight,
     OmniShadow, OmniShadowDescriptor, ShadowCaster, caster::CasterPipelineDescriptor,
     caster::is_closed_solid,
 };
 
-use crate::support::frames::{Coverage, DirectionalFrame, OmniFrame, RecordFrame};
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::random::Random;
-use crate::support::readback;
-use crate::support::scene::Mesh;
+use crate::fixtures::frames::{Coverage, DirectionalFrame, OmniFrame, RecordFrame};
+use crate::fixtures::gpu::{Gpu, gpu};
 
 fn is_closed(mesh: &Mesh) -> bool {
     is_closed_solid(&mesh.positions, &mesh.indices)

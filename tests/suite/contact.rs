@@ -2,17 +2,19 @@
 //! report gives.
 
 use glam::{DVec3, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
 use wgpu_shadows::{
     Aabb, Bias, DepthFormat, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
     Filter, ShadowCaster,
 };
 
-use crate::support::frames::{Coverage, DirectionalFrame};
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::probe::{Point, SunProbe, record};
-use crate::support::random::Random;
-use crate::support::scene::{Mesh, Scene};
-use crate::support::table;
+use crate::fixtures::frames::{Coverage, DirectionalFrame};
+use crate::fixtures::gpu::{Gpu, gpu};
+use crate::fixtures::probe::{SunProbe, record};
+use crate::fixtures::scene::Scene;
+use crate::fixtures::table;
 
 const BIASES: [Bias; 4] = [
     Bias::Auto,

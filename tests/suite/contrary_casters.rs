@@ -1,62 +1,21 @@
-//! Tests casters that violate the contract: they return different values within a frame, panic, leave the pass in
-//! another state than they found it, or belong to another device.
+//! Tests casters that violate the contract: they return different values within a frame, panic, or
+//! belong to another device.
 
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use glam::{DVec3, Mat4, Vec3};
+use glam::{Mat4, Vec3};
+use shadow_support::readback;
 use wgpu_shadows::{
-    Aabb, CasterPipeline, DepthFormat, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, MeshCaster, Revision, ShadowCaster, ShadowError, ShadowView,
+    Aabb, CasterPipeline, DepthFormat, MeshCaster, Revision, ShadowCaster, ShadowError, ShadowView,
     caster::CasterPipelineDescriptor, report::ViewStatus,
 };
 
-use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::probe::record;
-use crate::support::readback;
-use crate::support::scene::{Mesh, default_pipeline};
-
-const BOX: Aabb = Aabb::new(Vec3::new(-4.0, -1.0, -4.0), Vec3::new(4.0, 4.0, 4.0));
-const MAP_SIZE: u32 = 64;
-
-fn sun(gpu: &Gpu) -> DirectionalShadow {
-    let descriptor = DirectionalShadowDescriptor {
-        map_size: MAP_SIZE,
-        ..Default::default()
-    };
-    DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun")
-}
-
-fn frame<'a>(casters: &'a [&'a dyn ShadowCaster]) -> DirectionalFrame<'a> {
-    DirectionalFrame {
-        origin: DVec3::ZERO,
-        light: DirectionalLight::new(Vec3::new(0.3, -1.0, 0.2)),
-        coverage: Coverage::Bounds(BOX),
-        casters,
-        receivers: &[],
-    }
-}
-
-/// Returns a slab one unit above the ground, `x` from the middle.
-fn slab(gpu: &Gpu, pipeline: &CasterPipeline, x: f32) -> MeshCaster {
-    let mesh = Mesh::cuboid(Vec3::new(x - 0.5, 1.0, -0.5), Vec3::new(x + 0.5, 1.1, 0.5));
-    mesh.caster(gpu, pipeline, Mat4::IDENTITY)
-}
-
-/// Returns the map of a new light.
-fn fresh_map(gpu: &Gpu, casters: &[&dyn ShadowCaster]) -> Vec<f32> {
-    let mut shadow = sun(gpu);
-    record(gpu, &mut shadow, &frame(casters));
-    readback::depth_layer(gpu, shadow.maps().texture(), 0)
-}
-
-/// Asserts that two maps are equal; a failure prints a number instead of two maps.
-fn assert_same(found: &[f32], wanted: &[f32], what: &str) {
-    assert!(wanted.iter().any(|depth| *depth > 0.0), "an empty map");
-    let differing = found.iter().zip(wanted).filter(|(a, b)| a != b).count();
-    assert_eq!(differing, 0, "{what}: texels differ");
-}
+use crate::fixtures::frames::RecordFrame;
+use crate::fixtures::gpu::{gpu, two_gpus};
+use crate::fixtures::probe::record;
+use crate::fixtures::scene::default_pipeline;
+use crate::fixtures::slabs::{assert_same, frame, fresh_map, slab, sun};
 
 /// Is a mesh with two pipelines that it returns in turn, one of which is made for maps of another format.
 struct Fickle {
@@ -221,147 +180,10 @@ fn a_caster_that_panics_leaves_nothing_behind() {
     assert_eq!(report.views[0].status, ViewStatus::Kept);
 }
 
-/// Lists what a caster may do to the pass before it draws.
-#[derive(Clone, Copy, Debug)]
-enum Habit {
-    Viewport,
-    DepthRange,
-    Scissor,
-    Group,
-    Pipeline,
-    Bundle,
-}
-
-/// Is a mesh that draws and leaves the pass in another state than it found it.
-struct Untidy {
-    mesh: MeshCaster,
-    habit: Habit,
-    /// Is the bind group of a view that looks elsewhere.
-    group: wgpu::BindGroup,
-    bundle: wgpu::RenderBundle,
-    other: CasterPipeline,
-}
-
-impl ShadowCaster for Untidy {
-    fn bounds(&self) -> Aabb {
-        self.mesh.bounds()
-    }
-
-    fn pipeline(&self) -> &CasterPipeline {
-        self.mesh.pipeline()
-    }
-
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &ShadowView) {
-        self.mesh.draw(pass, view);
-        let size = view.map_size() as f32;
-        match self.habit {
-            Habit::Viewport => pass.set_viewport(0.0, 0.0, size / 4.0, size / 4.0, 0.0, 1.0),
-            Habit::DepthRange => pass.set_viewport(0.0, 0.0, size, size, 0.25, 0.5),
-            Habit::Scissor => pass.set_scissor_rect(0, 0, 3, 3),
-            Habit::Group => pass.set_bind_group(0, &self.group, &[0]),
-            Habit::Pipeline => {
-                let other = self.other.wgpu_pipeline(DepthFormat::Float32);
-                pass.set_pipeline(other.expect("a pipeline for 32 bits"));
-            }
-            Habit::Bundle => pass.execute_bundles([&self.bundle]),
-        }
-    }
-}
-
-/// Returns a bind group like the library's own, with a view that sees nothing.
-fn blind_group(gpu: &Gpu) -> wgpu::BindGroup {
-    let layout = gpu
-        .device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: None,
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-                ty: wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Uniform,
-                    has_dynamic_offset: true,
-                    min_binding_size: wgpu::BufferSize::new(80),
-                },
-                count: None,
-            }],
-        });
-    let buffer = gpu.buffer(&[0.0_f32; 64], wgpu::BufferUsages::UNIFORM);
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: None,
-        layout: &layout,
-        entries: &[wgpu::BindGroupEntry {
-            binding: 0,
-            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                buffer: &buffer,
-                offset: 0,
-                size: wgpu::BufferSize::new(80),
-            }),
-        }],
-    })
-}
-
-fn empty_bundle(gpu: &Gpu) -> wgpu::RenderBundle {
-    let encoder = gpu
-        .device
-        .create_render_bundle_encoder(&wgpu::RenderBundleEncoderDescriptor {
-            label: None,
-            color_formats: &[],
-            depth_stencil: Some(wgpu::RenderBundleDepthStencil {
-                format: wgpu::TextureFormat::Depth32Float,
-                depth_read_only: false,
-                stencil_read_only: true,
-            }),
-            sample_count: 1,
-            multiview: None,
-        });
-    encoder.finish(&wgpu::RenderBundleDescriptor { label: None })
-}
-
-/// The casters after one that changes the state of the pass are drawn as if it had not.
-#[test]
-fn casters_find_the_pass_as_it_should_be() {
-    let gpu = gpu();
-    let pipeline = default_pipeline(gpu);
-    // This pipeline culls the side of the slabs that is seen.
-    let other = CasterPipeline::new(
-        &gpu.device,
-        &CasterPipelineDescriptor {
-            primitive: wgpu::PrimitiveState {
-                cull_mode: Some(wgpu::Face::Back),
-                front_face: wgpu::FrontFace::Cw,
-                ..Default::default()
-            },
-            ..Default::default()
-        },
-    )
-    .expect("a valid pipeline");
-    let last = slab(gpu, &pipeline, 2.0);
-    let tidy = slab(gpu, &pipeline, -2.0);
-    let wanted = fresh_map(gpu, &[&tidy, &last]);
-    for habit in [
-        Habit::Viewport,
-        Habit::DepthRange,
-        Habit::Scissor,
-        Habit::Group,
-        Habit::Pipeline,
-        Habit::Bundle,
-    ] {
-        let untidy = Untidy {
-            mesh: slab(gpu, &pipeline, -2.0),
-            habit,
-            group: blind_group(gpu),
-            bundle: empty_bundle(gpu),
-            other: other.clone(),
-        };
-        let map = fresh_map(gpu, &[&untidy, &last]);
-        assert_same(&map, &wanted, &format!("{habit:?}"));
-    }
-}
-
 /// A caster whose pipeline belongs to another device is refused before anything is recorded.
 #[test]
 fn pipelines_of_another_device() {
-    let [here, there] = Gpu::two();
+    let [here, there] = two_gpus();
     let own = slab(&here, &default_pipeline(&here), 0.0);
     let foreign = slab(&there, &default_pipeline(&there), 2.0);
     let mut shadow = sun(&here);

@@ -2,15 +2,15 @@
 //! bit.
 
 use glam::{DVec3, Mat4, Vec3};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::random::Random;
 use wgpu_shadows::{Aabb, report::ViewStatus};
 
-use crate::support::camera::Camera;
-use crate::support::cube_pair::{
+use crate::fixtures::cube_pair::{
     LIGHT, Look, Pair, behind, cube, culled, furnished, plain, room, straddling,
 };
-use crate::support::multiview::{device, is_right};
-use crate::support::random::Random;
-use crate::support::scene::Mesh;
+use crate::fixtures::multiview::{device, is_right};
 
 #[test]
 fn one_pass_gives_the_depths_of_a_pass_each() {

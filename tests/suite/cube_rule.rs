@@ -1,16 +1,17 @@
 //! Tests when the six faces of a point light are drawn in one pass, and what the report says about it.
 
 use glam::{DVec3, Mat4, Vec3};
+use shadow_support::mesh::Mesh;
 use wgpu_shadows::{
     CasterPipeline, OmniLight, OmniShadow, OmniShadowDescriptor, caster::CasterPipelineDescriptor,
     caster::CasterVertex, report::ViewStatus,
 };
 
-use crate::support::cube_pair::{LIGHT, Pair, Stage, furnished, room};
-use crate::support::frames::{OmniFrame, RecordFrame};
-use crate::support::gpu::Gpu;
-use crate::support::multiview::{device, is_right};
-use crate::support::scene::{Mesh, default_pipeline};
+use crate::fixtures::cube_pair::{LIGHT, Pair, Stage, furnished, room};
+use crate::fixtures::frames::{OmniFrame, RecordFrame};
+use crate::fixtures::gpu::Gpu;
+use crate::fixtures::multiview::{device, is_right};
+use crate::fixtures::scene::default_pipeline;
 
 #[test]
 fn the_report_tells_of_one_pass() {

@@ -3,6 +3,8 @@
 
 use glam::{DVec3, Vec3};
 use image::RgbaImage;
+use shadow_support::mesh::Mesh;
+use shadow_support::readback;
 use wgpu_shadows::{
     Aabb, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniLight, OmniShadow,
     OmniShadowDescriptor, ShadowMaps, SpotLight, SpotShadow, SpotShadowDescriptor,
@@ -10,15 +12,14 @@ use wgpu_shadows::{
     pool::PoolDescriptor, pool::PoolLight,
 };
 
-use crate::support::ask::{record_omni, record_spot, submitted};
-use crate::support::frames::{
+use crate::fixtures::ask::{record_omni, record_spot, submitted};
+use crate::fixtures::frames::{
     Coverage, DirectionalFrame, OmniFrame, PoolFrame, RecordFrame, SpotFrame,
 };
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::picture::{COLOR, color_pass, color_target};
-use crate::support::probe::record;
-use crate::support::readback;
-use crate::support::scene::{Mesh, Scene};
+use crate::fixtures::gpu::{Gpu, gpu};
+use crate::fixtures::picture::{COLOR, color_pass, color_target};
+use crate::fixtures::probe::record;
+use crate::fixtures::scene::Scene;
 
 /// Draws into the upper left `width` by `height` pixels of a square target.
 fn picture(
@@ -91,31 +92,39 @@ fn a_sun_shows_its_depth() {
     assert!(empty.pixels().all(|pixel| pixel.0 == [255; 4]));
 }
 
-/// A spot light shines on a plane: each pixel shows how far along the ray through its texel the plane lies, as a
-/// fraction of the range.
-#[test]
-fn a_spot_shows_distances() {
-    let gpu = gpu();
+/// Records a spot light over a floor at height 0.
+fn spot_over_floor(gpu: &Gpu, light: SpotLight, receivers: Aabb) -> SpotShadow {
     let descriptor = SpotShadowDescriptor {
         map_size: MAP,
         ..Default::default()
     };
     let mut shadow = SpotShadow::new(&gpu.device, &descriptor).expect("a valid spot");
     let scene = Scene::new(gpu, &[Mesh::floor(0.0, 9.0)]);
-    let (place, range) = (DVec3::new(0.3, 3.0, -0.2), 6.0);
     let frame = SpotFrame {
         origin: DVec3::ZERO,
-        light: SpotLight {
-            position_world: place,
-            direction: Vec3::new(0.3, -1.0, 0.2),
-            outer_angle_radians: 0.7,
-            range: range as f32,
-        },
+        light,
         camera: None,
         casters: &scene.list(),
-        receivers: &[Aabb::new(Vec3::splat(-9.0), Vec3::splat(9.0))],
+        receivers: &[receivers],
     };
     record_spot(gpu, &mut shadow, &frame).expect("a valid frame");
+    shadow
+}
+
+/// A spot light shines on a plane: each pixel shows how far along the ray through its texel the plane lies, as a
+/// fraction of the range.
+#[test]
+fn a_spot_shows_distances() {
+    let gpu = gpu();
+    let (place, range) = (DVec3::new(0.3, 3.0, -0.2), 6.0);
+    let light = SpotLight {
+        position_world: place,
+        direction: Vec3::new(0.3, -1.0, 0.2),
+        outer_angle_radians: 0.7,
+        range: range as f32,
+    };
+    let receivers = Aabb::new(Vec3::splat(-9.0), Vec3::splat(9.0));
+    let shadow = spot_over_floor(gpu, light, receivers);
     let layer = picture(gpu, shadow.maps(), DebugImage::Layer(0), [MAP; 2]);
     let image = layer.expect("a layer of the map");
     let view = shadow.maps().views().next().expect("a view");
@@ -250,28 +259,14 @@ fn a_cross_shows_the_walls_of_a_room() {
 #[test]
 fn an_endless_light_shows_distances() {
     let gpu = gpu();
-    let descriptor = SpotShadowDescriptor {
-        map_size: MAP,
-        ..Default::default()
+    let light = SpotLight {
+        position_world: DVec3::Y * 3.0,
+        direction: Vec3::NEG_Y,
+        outer_angle_radians: 0.7,
+        range: f32::INFINITY,
     };
-    let mut shadow = SpotShadow::new(&gpu.device, &descriptor).expect("a valid spot");
-    let scene = Scene::new(gpu, &[Mesh::floor(0.0, 9.0)]);
-    let frame = SpotFrame {
-        origin: DVec3::ZERO,
-        light: SpotLight {
-            position_world: DVec3::Y * 3.0,
-            direction: Vec3::NEG_Y,
-            outer_angle_radians: 0.7,
-            range: f32::INFINITY,
-        },
-        camera: None,
-        casters: &scene.list(),
-        receivers: &[Aabb::new(
-            Vec3::new(-9.0, -3.0, -9.0),
-            Vec3::new(9.0, 0.0, 9.0),
-        )],
-    };
-    record_spot(gpu, &mut shadow, &frame).expect("a valid frame");
+    let receivers = Aabb::new(Vec3::new(-9.0, -3.0, -9.0), Vec3::new(9.0, 0.0, 9.0));
+    let shadow = spot_over_floor(gpu, light, receivers);
     let image = picture(gpu, shadow.maps(), DebugImage::Layer(0), [MAP; 2]).expect("a layer");
     // The cone's square meets the box's lower side in corners at 6 (tan 0.7, 1, tan 0.7).
     let farthest = 6.0 * (2.0 * 0.7_f64.tan().powi(2) + 1.0).sqrt();

@@ -1,17 +1,18 @@
 //! Tests maps of 16 bits: what they contain, what they cost, and casters that were not made for them.
 
 use glam::{DVec3, Mat4, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::readback;
 use wgpu_shadows::{
     Aabb, CasterPipeline, DepthFormat, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, ShadowCaster, ShadowError, caster::CasterPipelineDescriptor,
     error::CasterError,
 };
 
-use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::probe::{Point, SunProbe, record};
-use crate::support::readback;
-use crate::support::scene::Mesh;
+use crate::fixtures::frames::{Coverage, DirectionalFrame, RecordFrame};
+use crate::fixtures::gpu::{Gpu, gpu};
+use crate::fixtures::probe::{SunProbe, record};
 
 const BOX: Aabb = Aabb::new(Vec3::new(-4.0, -1.0, -4.0), Vec3::new(4.0, 4.0, 4.0));
 

@@ -2,18 +2,19 @@
 //! errors that the bias allows for are those that the device makes.
 
 use glam::{DVec2, DVec3, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::random::Random;
+use shadow_support::readback;
 use wgpu_shadows::{
     Aabb, DepthFormat, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
 };
 
-use crate::support::frames::{Coverage, DirectionalFrame};
-use crate::support::gpu::gpu;
-use crate::support::probe::record;
-use crate::support::random::Random;
-use crate::support::readback;
-use crate::support::scene::{Mesh, Scene};
-use crate::support::table;
-use crate::support::view_member::{member, texel_from_anchor};
+use crate::fixtures::frames::{Coverage, DirectionalFrame};
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::probe::record;
+use crate::fixtures::scene::Scene;
+use crate::fixtures::table;
+use crate::fixtures::view_member::{member, texel_from_anchor};
 
 const MAP_SIZE: u32 = 256;
 

@@ -1,13 +1,14 @@
 //! Tests the depth texture that an engine receives: what its getters return, and that it can be copied.
 
 use glam::{DVec3, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::readback;
 use wgpu_shadows::{Aabb, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor};
 
-use crate::support::frames::{Coverage, DirectionalFrame};
-use crate::support::gpu::vulkan;
-use crate::support::probe::record;
-use crate::support::readback;
-use crate::support::scene::{Mesh, Scene};
+use crate::fixtures::frames::{Coverage, DirectionalFrame};
+use crate::fixtures::gpu::vulkan;
+use crate::fixtures::probe::record;
+use crate::fixtures::scene::Scene;
 
 /// A copy of the layer and a shader's samples of it agree bit for bit. (wgpu's OpenGL backend does not copy depth
 /// textures.)

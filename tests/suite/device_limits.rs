@@ -4,6 +4,7 @@
 use std::fmt::Debug;
 
 use glam::{DVec3, Mat4, Vec3};
+use shadow_support::mesh::Mesh;
 use wgpu_shadows::{
     Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
     OmniShadow, OmniShadowDescriptor, ShadowBindings, ShadowBindingsDescriptor, ShadowError,
@@ -13,17 +14,16 @@ use wgpu_shadows::{
     pool::OmniShadowPool, pool::PoolDescriptor, pool::SpotShadowPool,
 };
 
-use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};
-use crate::support::gpu::{Gpu, GpuRequest};
-use crate::support::picture::{color_pass, color_target};
-use crate::support::scene::Mesh;
+use crate::fixtures::frames::{Coverage, DirectionalFrame, RecordFrame};
+use crate::fixtures::gpu::{Gpu, GpuRequest, own_gpu};
+use crate::fixtures::picture::{color_pass, color_target};
 
 const VIEW_BYTES: u64 = ShadowViewUniform::SIZE_BYTES;
 
 fn device(lower: impl FnOnce(&mut wgpu::Limits)) -> Gpu {
     let mut limits = wgpu::Limits::default();
     lower(&mut limits);
-    Gpu::new(GpuRequest {
+    own_gpu(GpuRequest {
         limits,
         ..Default::default()
     })

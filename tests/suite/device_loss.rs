@@ -2,6 +2,7 @@
 //! call returns a typed error and never panics.
 
 use glam::{DVec3, Mat4, Vec3};
+use shadow_support::mesh::Mesh;
 use wgpu_shadows::{
     Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
     OmniLight, OmniShadow, OmniShadowDescriptor, ShadowBindings, ShadowBindingsDescriptor,
@@ -12,13 +13,13 @@ use wgpu_shadows::{
     report::ViewStatus,
 };
 
-use crate::support::frames::{
+use crate::fixtures::frames::{
     Coverage, DirectionalFrame, OmniFrame, PoolFrame, RecordFrame, SpotFrame,
 };
-use crate::support::gpu::{Gpu, GpuRequest};
-use crate::support::picture::{color_pass, color_target};
-use crate::support::scene::{Mesh, default_pipeline};
-use crate::support::table;
+use crate::fixtures::gpu::{Gpu, GpuRequest, own_gpu, two_gpus};
+use crate::fixtures::picture::{color_pass, color_target};
+use crate::fixtures::scene::default_pipeline;
+use crate::fixtures::table;
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
@@ -165,7 +166,7 @@ fn pool_frame<'a, L>(
 /// Once the device is lost, nothing is created on it and no frame is recorded, and each call returns that error.
 #[test]
 fn a_lost_device_makes_nothing() {
-    let lost = Gpu::new(GpuRequest::default());
+    let lost = own_gpu(GpuRequest::default());
     let device = &lost.device;
     let mesh = Mesh::cuboid(Vec3::splat(-0.2), Vec3::splat(0.2));
     let pipeline = default_pipeline(&lost);
@@ -261,7 +262,7 @@ fn a_lost_device_makes_nothing() {
 /// its map makes no call to the device.
 #[test]
 fn a_lost_device_draws_nothing() {
-    let lost = Gpu::new(GpuRequest::default());
+    let lost = own_gpu(GpuRequest::default());
     let mesh = Mesh::cuboid(Vec3::splat(-0.2), Vec3::splat(0.2));
     let mut caster = mesh.caster(&lost, &default_pipeline(&lost), Mat4::IDENTITY);
     let mut sun = sun(&lost).expect("a sun");
@@ -298,7 +299,7 @@ fn a_lost_device_draws_nothing() {
 /// device.
 #[test]
 fn a_light_of_another_device_is_refused() {
-    let [here, there] = Gpu::two();
+    let [here, there] = two_gpus();
     let mut all = Everything::new(&here);
     let error = bindings(&there, &all.sun).expect_err("no bindings");
     let wanted = BindingsError::OtherDevice {
@@ -336,7 +337,7 @@ fn maps_larger_than_the_memory() {
         max_texture_dimension_2d: 16384,
         ..Default::default()
     };
-    let large = Gpu::new(GpuRequest {
+    let large = own_gpu(GpuRequest {
         limits,
         backend: Some(wgpu::Backends::VULKAN),
         ..Default::default()

@@ -7,21 +7,22 @@
 //! the least and of the greatest results.
 
 use glam::{DVec2, DVec3, Vec3};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
+use shadow_support::readback;
 use wgpu_shadows::reference::{self, DepthLayer, Receiver};
 use wgpu_shadows::{
     Aabb, Bias, Filter, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowViewUniform,
 };
 
-use crate::support::ask::{Ask, record_omni};
-use crate::support::camera::Camera;
-use crate::support::frames::OmniFrame;
-use crate::support::gpu::gpu;
-use crate::support::probe::Point;
-use crate::support::random::Random;
-use crate::support::readback;
-use crate::support::rounding::{Band, U, band};
-use crate::support::scene::{Mesh, Scene};
-use crate::support::view_member::member;
+use crate::fixtures::ask::{Ask, record_omni};
+use crate::fixtures::frames::OmniFrame;
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::rounding::{Band, U, band};
+use crate::fixtures::scene::Scene;
+use crate::fixtures::view_member::member;
 
 const MAP_SIZE: u32 = 120;
 const LIGHT: DVec3 = DVec3::new(0.25, 0.5, -0.125);

@@ -1,16 +1,17 @@
 //! Tests where shadows end: at a distance along the view or at the end of a light's range, at once or over a fade.
 
 use glam::{DVec3, Vec3};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
 use wgpu_shadows::{
     Aabb, CameraView, Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
     OmniLight, OmniShadow, OmniShadowDescriptor, ShadowFrameDescriptor, ShadowScene, Stability,
 };
 
-use crate::support::ask::Ask;
-use crate::support::camera::Camera;
-use crate::support::gpu::gpu;
-use crate::support::probe::Point;
-use crate::support::scene::{Mesh, Scene};
+use crate::fixtures::ask::Ask;
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::scene::Scene;
 
 /// Returns a floor and a roof that covers all of it.
 fn hall() -> Scene {

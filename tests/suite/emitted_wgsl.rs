@@ -2,9 +2,9 @@
 
 use wgpu_shadows::{Bias, Filter, ShadowBindings, ShadowBindingsDescriptor, ShadowMaps};
 
-use crate::support::gpu::gpu;
-use crate::support::lights::{Kind, Light};
-use crate::support::wgsl;
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::lights::{Kind, Light};
+use crate::fixtures::wgsl;
 
 const BIASES: [Bias; 3] = [
     Bias::Auto,

@@ -1,6 +1,8 @@
 //! Tests casters with the engine's own WGSL and bind groups: a leaf card with holes, and a flag that moves.
 
 use glam::{DVec3, Mat4, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
 use wgpu::util::DeviceExt;
 use wgpu_shadows::{
     Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
@@ -8,11 +10,11 @@ use wgpu_shadows::{
     report::ViewStatus,
 };
 
-use crate::support::frames::{Coverage, DirectionalFrame};
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::probe::{Point, SunProbe, record};
-use crate::support::scene::{Mesh, default_pipeline};
-use crate::support::table;
+use crate::fixtures::frames::{Coverage, DirectionalFrame};
+use crate::fixtures::gpu::{Gpu, gpu};
+use crate::fixtures::probe::{SunProbe, record};
+use crate::fixtures::scene::default_pipeline;
+use crate::fixtures::table;
 
 /// Draws a square card one unit above the ground; its texture coordinates are x and z from 0 to 1.
 const LEAF: &str = "

@@ -5,7 +5,7 @@ use wgpu_shadows::{
     Bias, CascadeSplit, DirectionalShadow, DirectionalShadowDescriptor, Filter, ShadowError,
 };
 
-use crate::support::gpu::{Gpu, gpu};
+use crate::fixtures::gpu::{Gpu, gpu};
 
 fn sun(gpu: &Gpu, descriptor: &DirectionalShadowDescriptor<'_>) -> Result<(), ShadowError> {
     DirectionalShadow::new(&gpu.device, descriptor).map(|_| ())

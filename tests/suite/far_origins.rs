@@ -2,20 +2,23 @@
 //! finite, and no view is reported as empty that is not.
 
 use glam::{DVec3, Mat4, Vec3};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::triangle::{Triangle, occluded};
 use wgpu_shadows::{
     Aabb, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, MeshCaster, OmniLight,
     OmniShadow, OmniShadowDescriptor, ShadowCaster, ShadowError, ShadowView, ShadowViewUniform,
     SpotLight, SpotShadow, SpotShadowDescriptor, Stability, report::ViewStatus,
 };
 
-use crate::support::ask::{Ask, record_omni, record_spot, submitted};
-use crate::support::camera::Camera;
-use crate::support::frames::{Coverage, DirectionalFrame, OmniFrame, RecordFrame, SpotFrame};
-use crate::support::gpu::gpu;
-use crate::support::probe::{Point, SunProbe};
-use crate::support::report::assert_whole;
-use crate::support::scene::{Mesh, Scene, Triangle, default_pipeline, occluded};
-use crate::support::view_member::member;
+use crate::fixtures::ask::{Ask, record_omni, record_spot, submitted};
+use crate::fixtures::frames::{Coverage, DirectionalFrame, OmniFrame, RecordFrame, SpotFrame};
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::probe::SunProbe;
+use crate::fixtures::report::assert_whole;
+use crate::fixtures::scene::{Scene, default_pipeline};
+use crate::fixtures::view_member::member;
 
 /// Describe a slab close above the floor, in units of `unit`.
 const SLAB_HALF: f32 = 2.5;

@@ -7,20 +7,22 @@
 
 use bytemuck::Zeroable;
 use glam::{DVec2, DVec3, Vec2, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
+use shadow_support::readback;
 use wgpu_shadows::reference::{self, DepthLayer, Receiver};
 use wgpu_shadows::{
     Aabb, Bias, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter,
     ShadowViewUniform,
 };
 
-use crate::support::frames::{Coverage, DirectionalFrame};
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::probe::{Point, SunProbe, record};
-use crate::support::random::Random;
-use crate::support::readback;
-use crate::support::rounding::{Band, U, band};
-use crate::support::scene::{Mesh, Scene};
-use crate::support::view_member::{member, texel_and_depth};
+use crate::fixtures::frames::{Coverage, DirectionalFrame};
+use crate::fixtures::gpu::{Gpu, gpu};
+use crate::fixtures::probe::{SunProbe, record};
+use crate::fixtures::rounding::{Band, U, band};
+use crate::fixtures::scene::Scene;
+use crate::fixtures::view_member::{member, texel_and_depth};
 
 pub(super) const BIASES: [Bias; 3] = [
     Bias::Auto,

@@ -8,18 +8,19 @@ use std::cell::Cell;
 use glam::DVec3;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
+use shadow_support::camera::{Camera, Lens, Pose};
+use shadow_support::probe::Point;
+use shadow_support::triangle::occluded;
 use wgpu_shadows::reference::receiver;
 use wgpu_shadows::{Aabb, Bias, Filter};
 
-use crate::support::camera::{Camera, Lens, Pose};
-use crate::support::frames::Coverage;
-use crate::support::gpu::gpu;
-use crate::support::probe::{Point, SunProbe};
-use crate::support::random_scene::{Placed, World, world};
-use crate::support::rounding::band;
-use crate::support::scene::occluded;
-use crate::support::table;
-use crate::support::view_member::member;
+use crate::fixtures::frames::Coverage;
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::probe::SunProbe;
+use crate::fixtures::random_scene::{Placed, World, world};
+use crate::fixtures::rounding::band;
+use crate::fixtures::table;
+use crate::fixtures::view_member::member;
 
 const MAP_SIZE: u32 = 192;
 /// Is the default filter.

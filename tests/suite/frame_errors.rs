@@ -2,17 +2,19 @@
 //! shadows remain.
 
 use glam::{DVec3, Mat4, Vec3};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
 use wgpu_shadows::{
     Aabb, CameraView, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    ShadowCaster, ShadowError,
+    ShadowCaster, ShadowError, ShadowFrameDescriptor, ShadowScene,
 };
 
-use crate::support::camera::Camera;
-use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};
-use crate::support::gpu::gpu;
-use crate::support::probe::{Point, SunProbe, record};
-use crate::support::scene::{Mesh, default_pipeline};
-use crate::support::watched::Watched;
+use crate::fixtures::frames::{Coverage, DirectionalFrame, RecordFrame};
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::probe::{SunProbe, record};
+use crate::fixtures::scene::default_pipeline;
+use crate::fixtures::watched::Watched;
 
 const BOX: Aabb = Aabb::new(Vec3::new(-4.0, -0.5, -4.0), Vec3::new(4.0, 4.0, 4.0));
 const NAN: Vec3 = Vec3::new(f32::NAN, 2.0, 3.0);
@@ -269,4 +271,32 @@ fn views_that_f32_cannot_hold() {
         "the fitted view must be representable in f32 and f64, got an extent of {extent_world} world units at {distance_world} from the render origin and {coordinate_world} from the world origin"
     );
     assert_eq!(error.to_string(), message);
+}
+
+/// Errors of a frame name the camera, of several, that is invalid.
+#[test]
+fn errors_name_the_camera() {
+    let good = CameraView::new(Mat4::IDENTITY, Mat4::IDENTITY);
+    let bad = CameraView::new(Mat4::IDENTITY, Mat4::ZERO);
+    let mut scene = ShadowScene::new();
+    let error = scene
+        .frame(&ShadowFrameDescriptor {
+            origin: DVec3::ZERO,
+            coverage: wgpu_shadows::Coverage::Cameras(&[good, good, bad]),
+            casters: &[],
+            receivers: &[],
+        })
+        .err()
+        .expect("a camera without volume");
+    let wanted = ShadowError::CameraMatrix {
+        field: "CameraView::clip_from_view",
+        camera: 2,
+        value: Mat4::ZERO.to_string(),
+    };
+    assert_eq!(error, wanted);
+    assert!(
+        error
+            .to_string()
+            .starts_with("CameraView::clip_from_view of camera 2 must be")
+    );
 }

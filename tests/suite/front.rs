@@ -2,24 +2,20 @@
 //! and closer to the truth.
 //!
 //! `cargo bench --bench speed_vs_error` measures this in full; here it is measured on small images and with counts
-//! alone. The cost is [`measuring::technique::Cost::frame_work`], and the error is the root of the mean squared error
+//! alone. The cost is [`shadow_support::technique::Cost::frame_work`], and the error is the root of the mean squared error
 //! against rays cast in double precision.
 
-#[path = "../../benches/support/mod.rs"]
-mod measuring;
-
+use shadow_support::gpu::{Gpu, GpuRequest};
+use shadow_support::measure::configuration::{self, Configuration, Extent};
+use shadow_support::measure::floor::Floors;
+use shadow_support::measure::overall::{self, Overall};
+use shadow_support::measure::pixels::Effort;
+use shadow_support::measure::prober::Prober;
+use shadow_support::measure::subject::Subject;
+use shadow_support::scenes;
 use wgpu_shadows::{
     Bias, DirectionalShadowDescriptor, Filter, OmniShadowDescriptor, SpotShadowDescriptor,
 };
-
-use measuring::configuration::{self, Configuration, Extent};
-use measuring::floor::Floors;
-use measuring::gpu::Gpu;
-use measuring::measure::Subject;
-use measuring::overall::{self, Overall};
-use measuring::pixels::Effort;
-use measuring::probe::Prober;
-use measuring::scenes;
 
 /// Omits the rings of rays around each pixel, which distinguish errors at edges from others but do not change their
 /// sum.
@@ -31,7 +27,7 @@ const EFFORT: Effort = Effort {
 
 /// Measures every filter and map size with the derived bias, fitted to the camera, over all scenes with hard shadows.
 fn measured() -> Vec<Overall> {
-    let gpu = Gpu::new().expect("an adapter");
+    let gpu = Gpu::new(&GpuRequest::measuring()).expect("an adapter");
     let mut prober = Prober::new(&gpu);
     let mut configurations = configuration::all(Extent::Full, &[512, 1024, 2048, 4096]);
     configurations

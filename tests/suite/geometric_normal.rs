@@ -3,8 +3,26 @@
 use glam::{Mat4, Vec3};
 use wgpu_shadows::shader;
 
-use crate::support::gpu::gpu;
-use crate::support::triangles::{SIZE, VERTEX, draw};
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::triangles::{SIZE, VERTEX, draw};
+
+/// Returns stages that show the geometric normal on the side of `eye.place`, from -1 to 1 as 0 to 255.
+fn source() -> String {
+    let modules = shader::compose(&["normal"]).expect("a module of the table");
+    let fragment = "
+@fragment
+fn fragment(in: Varying) -> @location(0) vec4<f32> {
+    return vec4<f32>(shadow_geometric_normal(in.position, eye.place.xyz) * 0.5 + 0.5, 1.0);
+}
+";
+    format!("{modules}{VERTEX}{fragment}")
+}
+
+/// Returns the uniform of an image in clip space `clip`, with the vector to the side of the normal.
+fn uniform(clip: Mat4, side: Vec3) -> Vec<f32> {
+    let side = side.extend(0.0).to_array();
+    clip.to_cols_array().into_iter().chain(side).collect()
+}
 
 /// With both windings, both handednesses, and vectors of any length to the side, a leaning triangle has its own normal
 /// on the given side.
@@ -19,14 +37,7 @@ fn normals_are_on_the_side_that_is_told() {
     let normal = (corners[1] - corners[0])
         .cross(corners[2] - corners[0])
         .normalize();
-    let modules = shader::compose(&["normal"]).expect("a module of the table");
-    let fragment = "
-@fragment
-fn fragment(in: Varying) -> @location(0) vec4<f32> {
-    return vec4<f32>(shadow_geometric_normal(in.position, eye.place.xyz) * 0.5 + 0.5, 1.0);
-}
-";
-    let source = format!("{modules}{VERTEX}{fragment}");
+    let source = source();
     let aslant = normal + 0.9 * normal.any_orthonormal_vector();
     let sides = [1.0, 1e-30, 1e-36, 1e6, 1e30, 3e38].map(|length| aslant.normalize() * length);
     for mirrored in [1.0, -1.0] {
@@ -40,12 +51,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
                 let vertices = vertices.map(|corner| corner * scale);
                 let clip = Mat4::from_scale(Vec3::new(0.3 * mirrored / scale, 0.3 / scale, 0.0));
                 let told = |side: Vec3| {
-                    let uniform: Vec<f32> = clip
-                        .to_cols_array()
-                        .into_iter()
-                        .chain(side.extend(0.0).to_array())
-                        .collect();
-                    let picture = draw(gpu, &source, &uniform, &vertices, None);
+                    let picture = draw(gpu, &source, &uniform(clip, side), &vertices, None);
                     let [x, y, z, _] = picture.get_pixel(SIZE / 2, SIZE / 2).0;
                     [x, y, z].map(|byte| f32::from(byte) / 127.5 - 1.0)
                 };
@@ -90,14 +96,7 @@ fn normals_err_by_the_rounding_of_positions() {
     ];
     let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
     let normal = normal.normalize();
-    let modules = shader::compose(&["normal"]).expect("a module of the table");
-    let fragment = "
-@fragment
-fn fragment(in: Varying) -> @location(0) vec4<f32> {
-    return vec4<f32>(shadow_geometric_normal(in.position, eye.place.xyz) * 0.5 + 0.5, 1.0);
-}
-";
-    let source = format!("{modules}{VERTEX}{fragment}");
+    let source = source();
     let pixel = 2.0 / 0.3 / f64::from(SIZE);
     let mut worst_share = 0.0_f64;
     for exponent in 0..=5 {
@@ -105,12 +104,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
         let place = Vec3::new(away, 0.6 * away, -0.8 * away);
         let vertices = corners.map(|corner| corner + place);
         let clip = Mat4::from_scale(Vec3::new(0.3, 0.3, 0.0)) * Mat4::from_translation(-place);
-        let uniform: Vec<f32> = clip
-            .to_cols_array()
-            .into_iter()
-            .chain([0.0, 0.0, 1.0, 0.0])
-            .collect();
-        let image = draw(gpu, &source, &uniform, &vertices, None);
+        let image = draw(gpu, &source, &uniform(clip, Vec3::Z), &vertices, None);
         let mut worst = 0.0_f64;
         for y in SIZE / 4..SIZE * 3 / 4 {
             let [nx, ny, nz, _] = image.get_pixel(SIZE / 2, y).0;

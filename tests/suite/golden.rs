@@ -2,19 +2,23 @@
 
 use glam::{DVec3, Vec3};
 use image::RgbaImage;
+use shadow_support::bind;
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::readback;
 use wgpu_shadows::{
     Aabb, Bias, CameraView, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
     Filter, ShadowBindings, ShadowBindingsDescriptor, debug::DebugImage, debug::DebugView,
 };
 
-use crate::support::camera::Camera;
-use crate::support::frames::{Coverage, DirectionalFrame};
-use crate::support::golden::{Limits, assert_golden};
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::picture::{COLOR, color_pass, color_target, depth_target, scene_pass};
-use crate::support::probe::record;
-use crate::support::readback;
-use crate::support::scene::{Mesh, Scene};
+use crate::fixtures::frames::{Coverage, DirectionalFrame};
+use crate::fixtures::golden::{Limits, assert_golden};
+use crate::fixtures::gpu::{Gpu, gpu};
+use crate::fixtures::picture::{
+    COLOR, color_pass, color_target, depth_target, scene_pass, scene_pipeline,
+};
+use crate::fixtures::probe::record;
+use crate::fixtures::scene::Scene;
 
 const SIZE: u32 = 128;
 const LIGHT: Vec3 = Vec3::new(-1.1, -1.0, 0.2);
@@ -180,66 +184,12 @@ fn shading(
     bindings: &ShadowBindings,
     eye: &wgpu::Buffer,
 ) -> (wgpu::RenderPipeline, wgpu::BindGroup) {
-    let device = &gpu.device;
-    let eye_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("eye"),
-        entries: &[wgpu::BindGroupLayoutEntry {
-            binding: 0,
-            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-            ty: wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Uniform,
-                has_dynamic_offset: false,
-                min_binding_size: None,
-            },
-            count: None,
-        }],
-    });
-    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("eye"),
-        layout: &eye_layout,
-        entries: &[wgpu::BindGroupEntry {
-            binding: 0,
-            resource: eye.as_entire_binding(),
-        }],
-    });
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("shading"),
-        bind_group_layouts: &[Some(&eye_layout), Some(bindings.layout())],
-        immediate_size: 0,
-    });
-    let module = gpu.shader(&format!("{}{SHADING}", bindings.wgsl()));
+    let layout = bind::layout(gpu, wgpu::ShaderStages::VERTEX_FRAGMENT, &[bind::UNIFORM]);
+    let group = bind::group(gpu, &layout, &[eye.as_entire_binding()]);
+    let source = format!("{}{SHADING}", bindings.wgsl());
+    let layouts = [Some(&layout), Some(bindings.layout())];
     let attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
-    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("shading"),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("vertex"),
-            compilation_options: Default::default(),
-            buffers: &[Some(wgpu::VertexBufferLayout {
-                array_stride: 24,
-                step_mode: wgpu::VertexStepMode::Vertex,
-                attributes: &attributes,
-            })],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: wgpu::TextureFormat::Depth32Float,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::Less),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        }),
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some("fragment"),
-            compilation_options: Default::default(),
-            targets: &[Some(COLOR.into())],
-        }),
-        multiview_mask: None,
-        cache: None,
-    });
+    let pipeline = scene_pipeline(gpu, &source, &layouts, 24, &attributes);
     (pipeline, group)
 }
 

@@ -1,38 +1,23 @@
 //! Tests when a map is drawn again and when it is kept, and that a kept map is still correct.
 
 use glam::{DVec3, Mat4, Vec3};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::readback;
 use wgpu_shadows::{
-    Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    MeshCaster, Revision, ShadowCaster, ShadowView, report::ShadowReport, report::ViewStatus,
+    Aabb, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, MeshCaster, Revision,
+    ShadowCaster, report::ShadowReport, report::ViewStatus,
 };
 
-use crate::support::camera::Camera;
-use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::probe::{Point, SunProbe, record};
-use crate::support::readback;
-use crate::support::scene::{Mesh, default_pipeline};
-use crate::support::watched::Watched;
+use crate::fixtures::frames::{Coverage, DirectionalFrame, RecordFrame};
+use crate::fixtures::gpu::{Gpu, gpu};
+use crate::fixtures::probe::{SunProbe, record};
+use crate::fixtures::scene::default_pipeline;
+use crate::fixtures::watched::Watched;
 
 const LIGHT: Vec3 = Vec3::new(0.5, -1.0, 0.25);
 const BOX: Aabb = Aabb::new(Vec3::new(-4.0, -0.5, -4.0), Vec3::new(4.0, 4.0, 4.0));
-
-/// Is a caster without a revision.
-struct Silent(MeshCaster);
-
-impl ShadowCaster for Silent {
-    fn bounds(&self) -> Aabb {
-        self.0.bounds()
-    }
-
-    fn pipeline(&self) -> &CasterPipeline {
-        self.0.pipeline()
-    }
-
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &ShadowView) {
-        self.0.draw(pass, view);
-    }
-}
 
 /// Holds a sun, its probe, and a slab that floats one unit above the ground around the origin.
 struct Stage {
@@ -179,7 +164,7 @@ fn meshes_and_an_engines_own_casters_are_never_the_same() {
 #[test]
 fn a_caster_that_says_nothing_is_always_drawn() {
     let mut stage = Stage::new();
-    let silent = Silent(slab(stage.gpu));
+    let silent = Watched::with_revision(slab(stage.gpu), None);
     assert_eq!(silent.revision(), None);
     let still = slab(stage.gpu);
     for _ in 0..3 {

@@ -2,19 +2,21 @@
 //! coordinates from which they were drawn, and no receiver may shadow itself because of it.
 
 use glam::{DMat3, DVec3, Mat4, Quat, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
 use wgpu_shadows::{
     Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    MeshCaster, Revision, ShadowCaster, ShadowView, SpotLight, SpotShadow, SpotShadowDescriptor,
-    pool::PoolDescriptor, pool::PoolLight, pool::SpotShadowPool, report::ShadowReport,
-    report::ViewStatus,
+    Revision, ShadowCaster, SpotLight, SpotShadow, SpotShadowDescriptor, pool::PoolDescriptor,
+    pool::PoolLight, pool::SpotShadowPool, report::ShadowReport, report::ViewStatus,
 };
 
-use crate::support::ask::{Ask, record_spot, submitted};
-use crate::support::frames::{Coverage, DirectionalFrame, PoolFrame, RecordFrame, SpotFrame};
-use crate::support::gpu::{Gpu, gpu, vulkan};
-use crate::support::probe::{Point, SunProbe, record};
-use crate::support::random::Random;
-use crate::support::scene::{Mesh, default_pipeline};
+use crate::fixtures::ask::{Ask, record_spot, submitted};
+use crate::fixtures::frames::{Coverage, DirectionalFrame, PoolFrame, RecordFrame, SpotFrame};
+use crate::fixtures::gpu::{Gpu, gpu, vulkan};
+use crate::fixtures::probe::{SunProbe, record};
+use crate::fixtures::scene::default_pipeline;
+use crate::fixtures::watched::Watched;
 
 /// Lists the distances of the wall from the world's origin, where the map is drawn first.
 const DISTANCES: [f64; 6] = [20.0, 120.0, 500.0, 1000.0, 5000.0, 20_000.0];
@@ -22,34 +24,6 @@ const DISTANCES: [f64; 6] = [20.0, 120.0, 500.0, 1000.0, 5000.0, 20_000.0];
 /// Is the least visibility of lit receivers: the results of 3000 of them differ from 1 by the rounding of a sum of 16
 /// weights, sharpened three times.
 const LIT: f32 = 1.0 - 192.0 * f32::EPSILON;
-
-/// Is an engine's caster whose version does not change while the origin moves, as `Revision` allows.
-struct Rebased {
-    mesh: MeshCaster,
-    revision: Revision,
-}
-
-impl ShadowCaster for Rebased {
-    fn bounds(&self) -> Aabb {
-        self.mesh.bounds()
-    }
-
-    fn pipeline(&self) -> &CasterPipeline {
-        self.mesh.pipeline()
-    }
-
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &ShadowView) {
-        self.mesh.draw(pass, view);
-    }
-
-    fn triangles(&self) -> u32 {
-        self.mesh.triangles()
-    }
-
-    fn revision(&self) -> Option<Revision> {
-        Some(self.revision)
-    }
-}
 
 /// Describes a wall 10 m wide and high whose sides follow none of the axes, somewhere in the world.
 struct Wall {
@@ -71,17 +45,16 @@ impl Wall {
         self.world_from_wall.z_axis
     }
 
-    /// Returns the wall as an engine draws it whose render space begins at `origin`.
-    fn caster(&self, gpu: &Gpu, pipeline: &CasterPipeline, origin: DVec3) -> Rebased {
+    /// Returns the wall as an engine draws it whose render space begins at `origin`. Its version does not change while
+    /// the origin moves, as `Revision` allows.
+    fn caster(&self, gpu: &Gpu, pipeline: &CasterPipeline, origin: DVec3) -> Watched {
         let mut mesh = Mesh::cuboid(Vec3::new(-5.0, -5.0, -0.3), Vec3::new(5.0, 5.0, 0.0));
         for position in &mut mesh.positions {
             let world = self.center + self.world_from_wall * position.as_dvec3();
             *position = (world - origin).as_vec3();
         }
-        Rebased {
-            mesh: mesh.caster(gpu, pipeline, Mat4::IDENTITY),
-            revision: Revision::new(1, 0),
-        }
+        let caster = mesh.caster(gpu, pipeline, Mat4::IDENTITY);
+        Watched::with_revision(caster, Some(Revision::new(1, 0)))
     }
 
     /// Returns receivers all over the front. All of them are lit, since nothing is in front of it.
@@ -225,17 +198,15 @@ fn a_wall_copied_while_the_origin_moves() {
         let probe = SunProbe::new(gpu, &shadow);
         let mut frame = |origin: DVec3, turn: u64| -> ShadowReport {
             let walls: Vec<_> = (0..24)
-                .map(|id| Rebased {
-                    revision: Revision::new(id, 0),
+                .map(|id| Watched {
+                    revision: Some(Some(Revision::new(id, 0))),
                     ..wall.caster(gpu, &pipeline, origin)
                 })
                 .collect();
             // The position is behind the wall, as seen from the light.
             let place = (wall.center - wall.normal() * 2.0 - origin).as_vec3();
-            let mover = Rebased {
-                mesh: Mesh::cuboid(place, place + 0.5).caster(gpu, &pipeline, Mat4::IDENTITY),
-                revision: Revision::new(100, turn),
-            };
+            let mover = Mesh::cuboid(place, place + 0.5).caster(gpu, &pipeline, Mat4::IDENTITY);
+            let mover = Watched::with_revision(mover, Some(Revision::new(100, turn)));
             let mut casters: Vec<&dyn ShadowCaster> = Vec::new();
             casters.extend(walls.iter().map(|wall| wall as &dyn ShadowCaster));
             casters.push(&mover);
@@ -273,8 +244,8 @@ fn a_spot_put_off_while_the_origin_moves() {
         let mut version = 0;
         let mut frame = |origin: DVec3, max_views: Option<u32>| {
             version += 1;
-            let caster = Rebased {
-                revision: Revision::new(1, version),
+            let caster = Watched {
+                revision: Some(Some(Revision::new(1, version))),
                 ..wall.caster(gpu, &pipeline, origin)
             };
             let light = |slot: usize| PoolLight {

@@ -2,13 +2,14 @@
 //! its maps again for it.
 
 use glam::{DQuat, DVec3, Vec3};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
 use wgpu_shadows::Aabb;
 
-use crate::support::camera::Camera;
-use crate::support::gpu::gpu;
-use crate::support::lamp_scenes::{Lamp, Setting, Shade, lamp_over_table, room, street_lamp};
-use crate::support::scene::{Mesh, Scene};
-use crate::support::table;
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::lamp_scenes::{Lamp, Setting, Shade, lamp_over_table, room, street_lamp};
+use crate::fixtures::scene::Scene;
+use crate::fixtures::table;
 
 /// A ground, a wall or a sky that no camera sees changes no bit of what the light is looked up with. All of these stand where
 /// their shadows fall on nothing that is seen.

@@ -2,17 +2,19 @@
 //! seen in a mirror has no more acne than the scene itself.
 
 use glam::{DMat4, DVec3, Mat4, Vec3};
+use shadow_support::camera::{Camera, Lens};
+use shadow_support::mesh::Mesh;
+use shadow_support::triangle::occluded;
 use wgpu_shadows::{
     Bias, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, ShadowBindings,
     ShadowBindingsDescriptor,
 };
 
-use crate::support::camera::{Camera, Lens};
-use crate::support::frames::{Coverage, DirectionalFrame};
-use crate::support::gpu::gpu;
-use crate::support::probe::record;
-use crate::support::scene::{Mesh, Scene, occluded};
-use crate::support::triangles::{SIZE, VERTEX, draw};
+use crate::fixtures::frames::{Coverage, DirectionalFrame};
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::probe::record;
+use crate::fixtures::scene::Scene;
+use crate::fixtures::triangles::{SIZE, VERTEX, draw};
 
 const LIGHT: Vec3 = Vec3::new(-0.7, -1.0, 0.35);
 

@@ -3,6 +3,9 @@
 //! no static-caster caches there, and reading maps back is slow.
 
 use glam::{DVec3, Mat4, Vec3};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::random::Random;
 use wgpu_shadows::{
     Aabb, CasterPipeline, DepthFormat, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor,
@@ -10,13 +13,10 @@ use wgpu_shadows::{
     report::ViewReport, report::ViewStatus,
 };
 
-use crate::support::camera::Camera;
-use crate::support::frames::{Coverage, DirectionalFrame, OmniFrame, RecordFrame};
-use crate::support::gpu::{Gpu, vulkan};
-use crate::support::multiview::{device, is_right};
-use crate::support::random::Random;
-use crate::support::scene::Mesh;
-use crate::support::texture_bytes::TextureBytes;
+use crate::fixtures::frames::{Coverage, DirectionalFrame, OmniFrame, RecordFrame};
+use crate::fixtures::gpu::{Gpu, vulkan};
+use crate::fixtures::multiview::{device, is_right};
+use crate::fixtures::texture_bytes::TextureBytes;
 
 /// Holds boxes of which some move, all move, or none does, for some frames each; some appear and disappear.
 struct Crowd {
@@ -126,6 +126,15 @@ impl Ways {
     }
 }
 
+/// Records a frame of both lights, so that they have the same history, into an encoder that is dropped.
+fn throw_away<F, L: RecordFrame<F>>(gpu: &Gpu, lights: [&mut L; 2], frame: &F) {
+    let mut thrown_away = gpu.encoder();
+    for light in lights {
+        let report = light.record_frame(&mut thrown_away, frame);
+        report.expect("a valid frame");
+    }
+}
+
 /// The camera and the light are still most of the time and sometimes jump; sometimes an encoder is dropped.
 #[test]
 fn kept_maps_of_a_sun_are_what_would_be_drawn() {
@@ -172,13 +181,7 @@ fn kept_maps_of_a_sun_are_what_would_be_drawn() {
                 receivers: &[],
             };
             if random.unit() < 0.02 {
-                let mut thrown_away = gpu.encoder();
-                let report = kept.record_frame(&mut thrown_away, &frame);
-                report.expect("a valid frame");
-                // The other light records the same frame, so that both have the same history.
-                let report = fresh.record_frame(&mut thrown_away, &frame);
-                report.expect("a valid frame");
-                drop(thrown_away);
+                throw_away(gpu, [&mut kept, &mut fresh], &frame);
                 kept.invalidate();
             }
             let mut encoder = gpu.encoder();
@@ -242,13 +245,7 @@ fn kept_faces_of_a_lamp_are_what_would_be_drawn() {
             receivers: &[],
         };
         if random.unit() < 0.02 {
-            let mut thrown_away = gpu.encoder();
-            let report = kept.record_frame(&mut thrown_away, &frame);
-            report.expect("a valid frame");
-            // The other light records the same frame, so that both have the same history.
-            let report = fresh.record_frame(&mut thrown_away, &frame);
-            report.expect("a valid frame");
-            drop(thrown_away);
+            throw_away(gpu, [&mut kept, &mut fresh], &frame);
             kept.invalidate();
         }
         let mut encoder = gpu.encoder();

@@ -2,20 +2,22 @@
 //! no more than they must.
 
 use glam::{DVec3, Vec3};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
+use shadow_support::triangle::Triangle;
 use wgpu_shadows::{
     Aabb, Bias, CameraView, Filter, OmniLight, OmniShadow, OmniShadowDescriptor,
     report::ShadowReport, report::ViewStatus,
 };
 
-use crate::support::ask::{Ask, record_omni};
-use crate::support::camera::Camera;
-use crate::support::frames::OmniFrame;
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::local_truth::settled;
-use crate::support::probe::Point;
-use crate::support::random::Random;
-use crate::support::scene::{Mesh, Scene, Triangle};
-use crate::support::table;
+use crate::fixtures::ask::{Ask, record_omni};
+use crate::fixtures::frames::OmniFrame;
+use crate::fixtures::gpu::{Gpu, gpu};
+use crate::fixtures::local_truth::settled;
+use crate::fixtures::scene::Scene;
+use crate::fixtures::table;
 
 /// Makes all of space receive, so that every caster is drawn, including a flat wall with nothing behind it.
 const EVERYWHERE: [Aabb; 1] = [Aabb::new(Vec3::splat(-40.0), Vec3::splat(40.0))];

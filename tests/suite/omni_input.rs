@@ -1,17 +1,18 @@
 //! Tests bad and unusual input of point lights: it is refused with field and value, or every result is a visibility.
 
 use glam::{DVec3, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
 use wgpu_shadows::{
     Aabb, Filter, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowError, report::ViewStatus,
 };
 
-use crate::support::ask::{Ask, record_omni};
-use crate::support::frames::OmniFrame;
-use crate::support::gpu::gpu;
-use crate::support::probe::Point;
-use crate::support::random::Random;
-use crate::support::scene::{Mesh, Scene};
-use crate::support::table;
+use crate::fixtures::ask::{Ask, record_omni};
+use crate::fixtures::frames::OmniFrame;
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::scene::Scene;
+use crate::fixtures::table;
 
 const EVERYWHERE: [Aabb; 1] = [Aabb::new(Vec3::splat(-40.0), Vec3::splat(40.0))];
 

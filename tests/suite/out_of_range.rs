@@ -1,21 +1,24 @@
 //! Tests that positions that no map covers are lit, and that nothing that can cast is cut off from the map.
 
 use glam::{DVec2, DVec3, Mat4, Vec3};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
+use shadow_support::readback;
+use shadow_support::triangle::occluded;
 use wgpu_shadows::reference::receiver;
 use wgpu_shadows::{
     Aabb, Bias, CameraView, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
     Filter,
 };
 
-use crate::support::camera::Camera;
-use crate::support::frames::{Coverage, DirectionalFrame};
-use crate::support::gpu::{Gpu, GpuRequest, gpu};
-use crate::support::probe::{Point, SunProbe, record};
-use crate::support::random::Random;
-use crate::support::readback;
-use crate::support::scene::{Mesh, Scene, occluded};
-use crate::support::table;
-use crate::support::view_member::member;
+use crate::fixtures::frames::{Coverage, DirectionalFrame};
+use crate::fixtures::gpu::{Gpu, GpuRequest, gpu, own_gpu};
+use crate::fixtures::probe::{SunProbe, record};
+use crate::fixtures::scene::Scene;
+use crate::fixtures::table;
+use crate::fixtures::view_member::member;
 
 const LIGHT: Vec3 = Vec3::new(0.3, -1.0, 0.2);
 const MAP_SIZE: u32 = 128;
@@ -315,7 +318,7 @@ fn a_caster_three_kilometres_up_casts() {
 /// The optional feature changes nothing: the map is the same, bit for bit, on a device with it and on one without it.
 #[test]
 fn depth_clip_control_changes_nothing() {
-    let with_feature = Gpu::new(GpuRequest {
+    let with_feature = own_gpu(GpuRequest {
         features: wgpu::Features::DEPTH_CLIP_CONTROL,
         ..Default::default()
     });

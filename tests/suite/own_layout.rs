@@ -2,19 +2,22 @@
 //! `ShadowBindings`, to the bit.
 
 use glam::{DVec3, Vec3};
+use shadow_support::bind;
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::{Point, PointShader};
+use shadow_support::random::Random;
 use wgpu_shadows::{
     DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniLight, OmniShadow,
     OmniShadowDescriptor, shader,
 };
 
-use crate::support::ask::{Ask, record_omni};
-use crate::support::camera::Camera;
-use crate::support::frames::{Coverage, DirectionalFrame, OmniFrame};
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::probe::{Point, PointShader, record};
-use crate::support::random::Random;
-use crate::support::scene::{Mesh, Scene};
-use crate::support::wgsl;
+use crate::fixtures::ask::{Ask, record_omni};
+use crate::fixtures::frames::{Coverage, DirectionalFrame, OmniFrame};
+use crate::fixtures::gpu::{Gpu, gpu};
+use crate::fixtures::probe::record;
+use crate::fixtures::scene::Scene;
+use crate::fixtures::wgsl;
 
 const MODULES: [&str; 4] = ["bias_plane", "filter_tent3", "cube_face", "normal"];
 
@@ -30,33 +33,10 @@ fn own_group(
     sun: &DirectionalShadow,
     lamp: &OmniShadow,
 ) -> (wgpu::BindGroupLayout, wgpu::BindGroup) {
-    let texture = wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Depth,
-        view_dimension: wgpu::TextureViewDimension::D2Array,
-        multisampled: false,
-    };
-    let uniform = wgpu::BindingType::Buffer {
-        ty: wgpu::BufferBindingType::Uniform,
-        has_dynamic_offset: false,
-        min_binding_size: None,
-    };
+    let texture = bind::depth_texture(wgpu::TextureViewDimension::D2Array);
     let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering);
-    let types = [sampler, texture, uniform, texture, uniform];
-    let entries: Vec<_> = (0..)
-        .zip(types)
-        .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty,
-            count: None,
-        })
-        .collect();
-    let layout = gpu
-        .device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("own layout"),
-            entries: &entries,
-        });
+    let types = [sampler, texture, bind::UNIFORM, texture, bind::UNIFORM];
+    let layout = bind::layout(gpu, wgpu::ShaderStages::COMPUTE, &types);
     let sampler = gpu.device.create_sampler(&Default::default());
     let resources = [
         wgpu::BindingResource::Sampler(&sampler),
@@ -65,15 +45,7 @@ fn own_group(
         wgpu::BindingResource::TextureView(lamp.maps().texture_view()),
         lamp.maps().uniform_buffer().as_entire_binding(),
     ];
-    let entries: Vec<_> = (0..)
-        .zip(resources)
-        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-        .collect();
-    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("own layout"),
-        layout: &layout,
-        entries: &entries,
-    });
+    let group = bind::group(gpu, &layout, &resources);
     (layout, group)
 }
 

@@ -2,17 +2,18 @@
 //! world.
 
 use glam::{DVec3, Vec2};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
 use wgpu_shadows::{
     Bias, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter, reference,
 };
 
 use super::penumbra::sun_profile;
-use crate::support::camera::Camera;
-use crate::support::frames::{Coverage, DirectionalFrame};
-use crate::support::gpu::gpu;
-use crate::support::probe::record;
-use crate::support::scene::{Mesh, Scene};
-use crate::support::view_member::member;
+use crate::fixtures::frames::{Coverage, DirectionalFrame};
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::probe::record;
+use crate::fixtures::scene::Scene;
+use crate::fixtures::view_member::member;
 
 /// Widths are within 10 % of the closed form and the rmse is at most 0.05, as for the fixed pattern.
 #[test]

@@ -8,21 +8,23 @@
 use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::readback;
 use wgpu_shadows::reference::{self, DepthLayer, Receiver};
 use wgpu_shadows::{
     Aabb, Bias, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter,
     SpotLight, SpotShadow, SpotShadowDescriptor,
 };
 
+use crate::fixtures::ask::{Ask, record_spot};
+use crate::fixtures::frames::{Coverage, DirectionalFrame, SpotFrame};
+use crate::fixtures::gpu::{Gpu, gpu};
+use crate::fixtures::probe::{SunProbe, record};
+use crate::fixtures::rounding::band;
+use crate::fixtures::scene::Scene;
+use crate::fixtures::table;
 use crate::suite::filter_parity::{Lit, at_border, place, points, scene};
-use crate::support::ask::{Ask, record_spot};
-use crate::support::frames::{Coverage, DirectionalFrame, SpotFrame};
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::probe::{Point, SunProbe, record};
-use crate::support::readback;
-use crate::support::rounding::band;
-use crate::support::scene::{Mesh, Scene};
-use crate::support::table;
 
 /// Is the error of the samples' positions: WGSL guarantees sine and cosine to 2^-11 of the unit circle, and the widest
 /// disk is 32 texels.

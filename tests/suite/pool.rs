@@ -2,6 +2,9 @@
 //! nothing.
 
 use glam::{DVec3, Mat4, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
 use wgpu_shadows::{
     Aabb, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowBindings, ShadowBindingsDescriptor,
     ShadowCaster, ShadowError, SpotLight, SpotShadow, SpotShadowDescriptor, pool::OmniShadowPool,
@@ -9,14 +12,12 @@ use wgpu_shadows::{
     report::ShadowReport,
 };
 
-use crate::support::ask::{Ask, record_omni, record_spot, submitted};
-use crate::support::frames::{OmniFrame, PoolFrame, RecordFrame, SpotFrame};
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::probe::Point;
-use crate::support::random::Random;
-use crate::support::scene::{Mesh, Scene, default_pipeline};
-use crate::support::watched::Watched;
-use crate::support::wgsl;
+use crate::fixtures::ask::{Ask, record_omni, record_spot, submitted};
+use crate::fixtures::frames::{OmniFrame, PoolFrame, RecordFrame, SpotFrame};
+use crate::fixtures::gpu::{Gpu, gpu};
+use crate::fixtures::scene::{Scene, default_pipeline};
+use crate::fixtures::watched::Watched;
+use crate::fixtures::wgsl;
 
 const EVERYWHERE: [Aabb; 1] = [Aabb::new(Vec3::splat(-30.0), Vec3::splat(30.0))];
 

@@ -2,17 +2,18 @@
 //! last map.
 
 use glam::{DVec3, Mat4, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
 use wgpu_shadows::{
     Aabb, MeshCaster, OmniLight, ShadowCaster, pool::OmniShadowPool, pool::PoolLight,
     report::ViewReport, report::ViewStatus,
 };
 
+use crate::fixtures::ask::Ask;
+use crate::fixtures::frames::{PoolFrame, RecordFrame};
+use crate::fixtures::gpu::{Gpu, gpu};
+use crate::fixtures::scene::default_pipeline;
 use crate::suite::pool::{bits, frame, lamp, pool, record};
-use crate::support::ask::Ask;
-use crate::support::frames::{PoolFrame, RecordFrame};
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::probe::Point;
-use crate::support::scene::{Mesh, default_pipeline};
 
 /// Holds lights far from each other, each over a slab of its own that moves.
 struct Row {

@@ -1,16 +1,17 @@
 //! Tests importances of any finite magnitude: no light with one above zero waits for ever.
 
 use glam::{DVec3, Mat4, Vec3};
+use shadow_support::mesh::Mesh;
 use wgpu_shadows::{
     Aabb, ShadowCaster, SpotLight, pool::PoolDescriptor, pool::PoolLight, pool::SpotShadowPool,
     report::ViewStatus,
 };
 
+use crate::fixtures::frames::{PoolFrame, RecordFrame};
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::scene::default_pipeline;
+use crate::fixtures::watched::Watched;
 use crate::suite::pool::frame;
-use crate::support::frames::{PoolFrame, RecordFrame};
-use crate::support::gpu::gpu;
-use crate::support::scene::{Mesh, default_pipeline};
-use crate::support::watched::Watched;
 
 /// Is the least importance that a light counts for, as a fraction of the greatest.
 const LEAST_SHARE: f64 = 1.0 / 4096.0;

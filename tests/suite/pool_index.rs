@@ -2,12 +2,12 @@
 //! is in 32 bits.
 
 use glam::Vec3;
+use shadow_support::probe::Point;
 use wgpu_shadows::{Bias, Filter};
 
-use crate::support::ask::Ask;
-use crate::support::gpu::gpu;
-use crate::support::lights::{Kind, stage};
-use crate::support::probe::Point;
+use crate::fixtures::ask::Ask;
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::lights::{Kind, stage};
 
 const CAPACITY: u32 = 2;
 

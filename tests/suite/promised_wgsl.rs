@@ -3,9 +3,9 @@
 
 use wgpu_shadows::{Bias, Filter, ShadowBindings, ShadowBindingsDescriptor, shader};
 
-use crate::support::gpu::gpu;
-use crate::support::lights::Kind;
-use crate::support::wgsl;
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::lights::Kind;
+use crate::fixtures::wgsl;
 
 /// Asserts that `engine` is valid WGSL after the text of the library.
 fn assert_valid(library: String, engine: &str) {

@@ -2,13 +2,13 @@
 //! gradient, and whether the map covers it.
 
 use glam::DVec2;
+use shadow_support::probe::PointShader;
 use wgpu_shadows::reference;
 use wgpu_shadows::{Bias, Filter, shader};
 
+use crate::fixtures::gpu::{Gpu, gpu};
+use crate::fixtures::rounding::band;
 use crate::suite::filter_parity::{BIASES, Lit, at_border, place, points, scene};
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::probe::PointShader;
-use crate::support::rounding::band;
 
 /// Writes a receiver as two vectors: texel, depth, covered or not; gradient.
 const RAW: &str = "

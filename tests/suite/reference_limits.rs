@@ -2,11 +2,11 @@
 //! are built with overflow checks, so that an index that wraps is noticed.
 
 use glam::{DVec2, DVec3};
+use shadow_support::random::Random;
 use wgpu_shadows::reference::{DepthLayer, Receiver, holds, receiver, visibility, weight};
 use wgpu_shadows::{Bias, Filter, ShadowViewUniform};
 
-use crate::support::random::Random;
-use crate::support::view_member::with_member;
+use crate::fixtures::view_member::with_member;
 
 const FILTERS: [Filter; 11] = [
     Filter::Nearest,

@@ -1,56 +1,25 @@
-//! Tests one frame for all lights: several cameras that share the maps, and which objects cast and receive.
+//! Tests one frame for all lights: several cameras that share the maps, and what the coverage means.
 
 use glam::{DMat4, DVec3, Mat4, Vec3};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
+use shadow_support::triangle::{Triangle, occluded};
 use wgpu_shadows::{
-    Aabb, CameraView, CasterPipeline, Coverage, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor, Revision,
-    ShadowCaster, ShadowError, ShadowFrameDescriptor, ShadowScene, ShadowView, SpotLight,
-    SpotShadow, SpotShadowDescriptor, Stability, report::ShadowReport, report::ViewStatus,
+    Aabb, CameraView, Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowCaster, ShadowFrameDescriptor,
+    ShadowScene, ShadowView, SpotLight, SpotShadow, SpotShadowDescriptor, Stability,
+    report::ShadowReport, report::ViewStatus,
 };
 
-use crate::support::ask::Ask;
-use crate::support::camera::Camera;
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::local_truth::Settled;
-use crate::support::probe::Point;
-use crate::support::random::Random;
-use crate::support::scene::{Mesh, Triangle, default_pipeline, occluded};
+use crate::fixtures::ask::Ask;
+use crate::fixtures::gpu::{Gpu, gpu};
+use crate::fixtures::local_truth::Settled;
+use crate::fixtures::scene::default_pipeline;
 
 const SUN: DVec3 = DVec3::new(0.35, -1.0, 0.2);
 const MAP_SIZE: u32 = 2048;
-
-/// Is a mesh with the flags that the test chooses.
-struct Flagged {
-    mesh: MeshCaster,
-    casts: bool,
-    receives: bool,
-}
-
-impl ShadowCaster for Flagged {
-    fn bounds(&self) -> Aabb {
-        self.mesh.bounds()
-    }
-
-    fn pipeline(&self) -> &CasterPipeline {
-        self.mesh.pipeline()
-    }
-
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &ShadowView) {
-        self.mesh.draw(pass, view);
-    }
-
-    fn casts(&self) -> bool {
-        self.casts
-    }
-
-    fn receives(&self) -> bool {
-        self.receives
-    }
-
-    fn revision(&self) -> Option<Revision> {
-        self.mesh.revision()
-    }
-}
 
 /// Holds two yards a hundred units apart, each with boxes on a floor and a camera of its own.
 struct Yards {
@@ -322,62 +291,6 @@ fn two_cameras_share_the_maps_of_local_lights() {
     }
 }
 
-/// A dome that does not receive costs no texels; a sheet that does not cast is not drawn and still counts as a
-/// receiver.
-#[test]
-fn who_casts_and_who_receives() {
-    let gpu = gpu();
-    let pipeline = default_pipeline(gpu);
-    let slab = Mesh::cuboid(Vec3::new(-0.5, 1.0, -0.5), Vec3::new(0.5, 1.1, 0.5));
-    let slab = slab.caster(gpu, &pipeline, Mat4::IDENTITY);
-    let floor = Mesh::floor(0.0, 2.0).caster(gpu, &pipeline, Mat4::IDENTITY);
-    let dome = Mesh::sphere(Vec3::ZERO, 400.0, 8).caster(gpu, &pipeline, Mat4::IDENTITY);
-    let flagged = |mesh, casts, receives| Flagged {
-        mesh,
-        casts,
-        receives,
-    };
-    let mut floor = flagged(floor, false, true);
-    let mut dome = flagged(dome, false, false);
-    let camera = Camera::modern(DVec3::new(0.5, 4.0, 5.0), DVec3::ZERO, 0.8, 1.0).view();
-    let mut scene = ShadowScene::new();
-    let mut report = |casters: &[&dyn ShadowCaster]| {
-        let frame = scene
-            .frame(&ShadowFrameDescriptor {
-                origin: DVec3::ZERO,
-                coverage: Coverage::Cameras(&[camera]),
-                casters,
-                receivers: &[],
-            })
-            .expect("a valid frame");
-        let mut shadow = sun(gpu, Stability::TightFit, 1);
-        let mut encoder = gpu.encoder();
-        let light = DirectionalLight::new(SUN.as_vec3());
-        let report = shadow.record(&mut encoder, &frame, &light);
-        let view = report.expect("a valid frame").views[0];
-        gpu.submit(encoder);
-        view
-    };
-    let alone = report(&[&slab, &floor]);
-    assert_eq!((alone.status, alone.casters), (ViewStatus::Drawn, 1));
-    assert_eq!(report(&[&slab, &floor, &dome]), {
-        let mut with_one_culled = alone;
-        with_one_culled.culled += 1;
-        with_one_culled
-    });
-    // With its default flags the dome would take the whole map.
-    (dome.casts, dome.receives) = (true, true);
-    let coarse = report(&[&slab, &floor, &dome]);
-    assert!(coarse.texel_size_world.x > 4.0 * alone.texel_size_world.x);
-    // Where nothing receives except the slab itself, nothing needs its shadow.
-    floor.receives = false;
-    let own = report(&[&slab, &floor]);
-    assert!(
-        own.depth_range_world < 0.7 * alone.depth_range_world,
-        "{own:?} {alone:?}"
-    );
-}
-
 /// The coverage of a frame means the same for all lights: without a limit everything counts, and with a box what lies
 /// in it.
 #[test]
@@ -442,33 +355,5 @@ fn coverage_is_one_for_all_lights() {
     assert_eq!(
         (nothing.0.0, nothing.1.0),
         (ViewStatus::Empty, ViewStatus::Empty)
-    );
-}
-
-/// Errors of a frame name the camera, of several, that is invalid.
-#[test]
-fn errors_name_the_camera() {
-    let good = CameraView::new(Mat4::IDENTITY, Mat4::IDENTITY);
-    let bad = CameraView::new(Mat4::IDENTITY, Mat4::ZERO);
-    let mut scene = ShadowScene::new();
-    let error = scene
-        .frame(&ShadowFrameDescriptor {
-            origin: DVec3::ZERO,
-            coverage: Coverage::Cameras(&[good, good, bad]),
-            casters: &[],
-            receivers: &[],
-        })
-        .err()
-        .expect("a camera without volume");
-    let wanted = ShadowError::CameraMatrix {
-        field: "CameraView::clip_from_view",
-        camera: 2,
-        value: Mat4::ZERO.to_string(),
-    };
-    assert_eq!(error, wanted);
-    assert!(
-        error
-            .to_string()
-            .starts_with("CameraView::clip_from_view of camera 2 must be")
     );
 }

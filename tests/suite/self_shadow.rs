@@ -5,18 +5,20 @@
 //! receivers darker than 1 - 1/255 must be zero.
 
 use glam::{DVec3, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
+use shadow_support::readback;
 use wgpu_shadows::{
     Aabb, Bias, DepthFormat, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
     Filter, report::ShadowReport,
 };
 
-use crate::support::frames::{Coverage, DirectionalFrame};
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::probe::{Point, SunProbe, record};
-use crate::support::random::Random;
-use crate::support::readback;
-use crate::support::scene::{Mesh, Scene};
-use crate::support::table;
+use crate::fixtures::frames::{Coverage, DirectionalFrame};
+use crate::fixtures::gpu::{Gpu, gpu};
+use crate::fixtures::probe::{SunProbe, record};
+use crate::fixtures::scene::Scene;
+use crate::fixtures::table;
 
 const TILTS_DEGREES: [f64; 12] = [
     0.0, 0.01, 1.0, 15.0, 45.0, 60.0, 75.0, 85.0, 88.0, 89.0, 89.9, 89.99,

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use wgpu_shadows::shader::{self, MODULES, ShaderModule};
 
-use crate::support::wgsl;
+use crate::fixtures::wgsl;
 
 /// Fails with all failures, not only with the first.
 fn report(failures: &[String]) {

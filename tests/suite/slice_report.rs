@@ -1,17 +1,18 @@
 //! Tests what the report says about a cascade's slice: how much of the map falls on it, and how finely.
 
 use glam::{DVec3, Vec3};
+use shadow_support::camera::{Camera, Lens};
+use shadow_support::mesh::Mesh;
+use shadow_support::random::Random;
 use wgpu_shadows::{
     DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Stability,
     report::ShadowReport,
 };
 
-use crate::support::camera::{Camera, Lens};
-use crate::support::frames::{Coverage, DirectionalFrame};
-use crate::support::gpu::gpu;
-use crate::support::probe::record;
-use crate::support::random::Random;
-use crate::support::scene::{Mesh, Scene};
+use crate::fixtures::frames::{Coverage, DirectionalFrame};
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::probe::record;
+use crate::fixtures::scene::Scene;
 
 fn report(
     scene: &Scene,

@@ -4,17 +4,18 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::{DVec3, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
 use wgpu_shadows::{Aabb, Bias, Filter, SpotLight, SpotShadow, SpotShadowDescriptor};
 
-use crate::support::ask::{Ask, record_spot};
-use crate::support::frames::SpotFrame;
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::local_truth::settled;
-use crate::support::probe::Point;
-use crate::support::random::Random;
-use crate::support::rounding::U;
-use crate::support::scene::{Mesh, Scene};
-use crate::support::table;
+use crate::fixtures::ask::{Ask, record_spot};
+use crate::fixtures::frames::SpotFrame;
+use crate::fixtures::gpu::{Gpu, gpu};
+use crate::fixtures::local_truth::settled;
+use crate::fixtures::rounding::U;
+use crate::fixtures::scene::Scene;
+use crate::fixtures::table;
 
 const EVERYWHERE: [Aabb; 1] = [Aabb::new(Vec3::splat(-60.0), Vec3::splat(60.0))];
 

@@ -1,12 +1,13 @@
 //! Tests bad input of spot lights: it is refused with field and value, and nothing changes.
 
 use glam::{DVec3, Vec3};
+use shadow_support::mesh::Mesh;
 use wgpu_shadows::{Aabb, Filter, ShadowError, SpotLight, SpotShadow, SpotShadowDescriptor};
 
-use crate::support::ask::record_spot;
-use crate::support::frames::SpotFrame;
-use crate::support::gpu::gpu;
-use crate::support::scene::{Mesh, Scene};
+use crate::fixtures::ask::record_spot;
+use crate::fixtures::frames::SpotFrame;
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::scene::Scene;
 
 const EVERYWHERE: [Aabb; 1] = [Aabb::new(Vec3::splat(-60.0), Vec3::splat(60.0))];
 

@@ -1,18 +1,20 @@
 //! Tests extents that no motion of the camera changes, splits at given depths, and what a walk through a town changes.
 
 use glam::DVec3;
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
 use wgpu_shadows::{
     CascadeSplit, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, ShadowError,
     Stability, reference,
 };
 
-use crate::support::camera::Camera;
-use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};
-use crate::support::gpu::gpu;
-use crate::support::probe::{Point, SunProbe, record};
-use crate::support::random::Random;
-use crate::support::rounding::U;
-use crate::support::scene::{Mesh, Scene};
+use crate::fixtures::frames::{Coverage, DirectionalFrame, RecordFrame};
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::probe::{SunProbe, record};
+use crate::fixtures::rounding::U;
+use crate::fixtures::scene::Scene;
 
 const LIGHT: DVec3 = DVec3::new(0.37, -1.0, 0.21);
 

@@ -1,13 +1,15 @@
 //! Tests that where shaders cannot gather, and the library samples instead, every filter gives the same visibilities,
 //! to the bit, as by the gathers that `filter_parity` compares with the CPU reference.
 
+use shadow_support::bind;
+use shadow_support::probe::{Point, PointShader};
 use wgpu_shadows::shader::{self, MODULES};
 use wgpu_shadows::{ShadowBindings, ShadowBindingsDescriptor};
 
+use crate::fixtures::gpu::{Gpu, gpu};
+use crate::fixtures::probe::SunProbe;
+use crate::fixtures::wgsl;
 use crate::suite::filter_parity::{BIASES, Lit, filters, points, scene};
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::probe::{Point, PointShader, SunProbe};
-use crate::support::wgsl;
 
 /// Runs the WGSL that `ShadowBindings` emits for the light where there is no gather, with the layout and group that it
 /// needs.
@@ -31,47 +33,21 @@ fn by_samples(gpu: &Gpu, lit: &Lit, points: &[Point]) -> Vec<f32> {
         .replace(map, "var shadow_map_sun: texture_2d_array<f32>;");
     let types = [
         wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering),
-        wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
+        bind::UNIFORM,
         wgpu::BindingType::Texture {
             sample_type: wgpu::TextureSampleType::Float { filterable: false },
             view_dimension: wgpu::TextureViewDimension::D2Array,
             multisampled: false,
         },
     ];
-    let entries: Vec<_> = (0..)
-        .zip(types)
-        .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty,
-            count: None,
-        })
-        .collect();
-    let layout = gpu
-        .device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("by samples"),
-            entries: &entries,
-        });
+    let layout = bind::layout(gpu, wgpu::ShaderStages::COMPUTE, &types);
     let sampler = gpu.device.create_sampler(&Default::default());
     let resources = [
         wgpu::BindingResource::Sampler(&sampler),
         lit.shadow.maps().uniform_buffer().as_entire_binding(),
         wgpu::BindingResource::TextureView(lit.shadow.maps().texture_view()),
     ];
-    let entries: Vec<_> = (0..)
-        .zip(resources)
-        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-        .collect();
-    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("by samples"),
-        layout: &layout,
-        entries: &entries,
-    });
+    let group = bind::group(gpu, &layout, &resources);
     let value = "shadow_sun(point.position, point.normal)";
     PointShader::new(gpu, &text, "f32", value, &layout).ask(gpu, &group, points)
 }

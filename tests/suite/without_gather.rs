@@ -2,14 +2,15 @@
 //! whose environment requests it. There the library draws what it draws elsewhere.
 
 use image::RgbaImage;
+use shadow_support::readback;
 use wgpu_shadows::{Bias, Filter, debug::DebugImage, debug::DebugView, shader};
 
-use crate::support::child;
-use crate::support::floor::{SIZE, picture};
-use crate::support::gpu::{Gpu, GpuRequest, gpu, vulkan};
-use crate::support::lights::{Kind, Light, camera, stage};
-use crate::support::picture::{COLOR, color_pass, color_target};
-use crate::support::readback;
+use crate::fixtures::child;
+use crate::fixtures::floor::{SIZE, picture};
+use crate::fixtures::gpu::{Gpu, GpuRequest, gpu, has_adapter, own_gpu, vulkan};
+use crate::fixtures::lights::{Kind, Light, camera, stage};
+use crate::fixtures::picture::{COLOR, color_pass, color_target, fragment_pipeline};
+use crate::fixtures::tint::tint;
 
 /// Disables desktop OpenGL and limits OpenGL ES to 3.0. The images that are compared with come from Vulkan, whatever
 /// the backend of the run.
@@ -21,10 +22,10 @@ const ES_3_0: [(&str, &str); 3] = [
 
 /// Returns the device, or `None` where the machine has no OpenGL, or not Mesa's, which reads these variables.
 fn es_3_0() -> Option<Gpu> {
-    if !Gpu::is_there(wgpu::Backends::GL) {
+    if !has_adapter(wgpu::Backends::GL) {
         return None;
     }
-    let gpu = Gpu::new(GpuRequest {
+    let gpu = own_gpu(GpuRequest {
         backend: Some(wgpu::Backends::GL),
         limits: wgpu::Limits::downlevel_webgl2_defaults(),
         ..Default::default()
@@ -116,29 +117,7 @@ fn fragment() -> @location(0) vec4<f32> {
 ";
     let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Internal);
     let module = gpu.shader(&source);
-    let _pipeline = gpu
-        .device
-        .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: None,
-            layout: None,
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("vertex"),
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: None,
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("fragment"),
-                compilation_options: Default::default(),
-                targets: &[Some(COLOR.into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
+    let _pipeline = fragment_pipeline(gpu, &module, None);
     pollster::block_on(scope.pop()).is_none()
 }
 
@@ -187,58 +166,8 @@ fn debug_picture(gpu: &Gpu, light: &dyn Light, what: DebugImage) -> RgbaImage {
 
 /// Returns the tint of a white image of a wall at some distance, across the borders of cascades.
 fn tinted(gpu: &Gpu, light: &dyn Light) -> RgbaImage {
-    let device = &gpu.device;
-    let view = DebugView::new(device, COLOR).expect("a format for pictures");
-    let depth = device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("depth"),
-        size: wgpu::Extent3d {
-            width: SIZE,
-            height: SIZE,
-            depth_or_array_layers: 1,
-        },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Depth32Float,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    });
-    let depth = depth.create_view(&Default::default());
-    let target = color_target(gpu, SIZE);
-    let target_view = target.create_view(&Default::default());
     // The camera's depth is 0.1 / distance.
-    let clip_from_render = camera().clip_from_view() * camera().view_from_render();
-    let mut encoder = gpu.encoder();
-    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-            view: &depth,
-            depth_ops: Some(wgpu::Operations {
-                load: wgpu::LoadOp::Clear(0.1 / 5.5),
-                store: wgpu::StoreOp::Store,
-            }),
-            stencil_ops: None,
-        }),
-        ..Default::default()
-    });
-    {
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &target_view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::WHITE),
-                    store: wgpu::StoreOp::Store,
-                },
-            })],
-            ..Default::default()
-        });
-        let render_from_clip = clip_from_render.inverse().as_mat4();
-        view.draw_cascades(&mut pass, light.maps(), &depth, render_from_clip)
-            .expect("a depth texture");
-    }
-    gpu.submit(encoder);
-    readback::rgba8(gpu, &target)
+    tint(gpu, light.maps(), &camera(), SIZE, 0.1 / 5.5)
 }
 
 /// Asserts that the pixels are the same, up to a step of 8 bits, and that there is more than one grey or colour.

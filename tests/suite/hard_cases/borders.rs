@@ -2,6 +2,10 @@
 //! light's layer is read.
 
 use glam::{DVec3, Vec3};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
 use wgpu_shadows::reference::receiver;
 use wgpu_shadows::{
     Aabb, Bias, CascadeSplit, DirectionalLight, DirectionalShadowDescriptor, Filter, OmniLight,
@@ -11,13 +15,9 @@ use wgpu_shadows::{
 
 use super::stage::{SUM_ERROR, Sun, differ, scene};
 use super::table;
-use crate::support::ask::{Ask, submitted};
-use crate::support::camera::Camera;
-use crate::support::frames::{Coverage, PoolFrame, RecordFrame};
-use crate::support::gpu::gpu;
-use crate::support::probe::Point;
-use crate::support::random::Random;
-use crate::support::scene::Mesh;
+use crate::fixtures::ask::{Ask, submitted};
+use crate::fixtures::frames::{Coverage, PoolFrame, RecordFrame};
+use crate::fixtures::gpu::gpu;
 
 /// Under an unbounded roof everything that a cascade covers is dark, and everything else is lit, on both sides of every
 /// border; the view function returns no layer that does not exist.

@@ -1,17 +1,17 @@
 //! Tests that cascades meet without a seam, and that each shows the truth.
 
 use glam::DVec3;
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
 use wgpu_shadows::reference::receiver;
 use wgpu_shadows::{Bias, CascadeSplit, DirectionalShadowDescriptor, Filter};
 
 use super::stage::{MARGIN, Sun, Verdict, bounds_of, boxes, level, scene, shining, world};
 use super::table;
-use crate::support::camera::Camera;
-use crate::support::frames::Coverage;
-use crate::support::gpu::gpu;
-use crate::support::random_scene::World;
-use crate::support::scene::Mesh;
-use crate::support::view_member::member;
+use crate::fixtures::frames::Coverage;
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::random_scene::World;
+use crate::fixtures::view_member::member;
 
 const LIGHT: DVec3 = DVec3::new(0.5, -1.0, 0.35);
 

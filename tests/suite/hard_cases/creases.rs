@@ -1,15 +1,16 @@
 //! Tests where two planes meet: a ridge does not shadow itself, and a valley only within the kernel of its crease.
 
 use glam::{DVec3, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
+use shadow_support::triangle::Triangle;
 use wgpu_shadows::{Aabb, Bias, DirectionalShadowDescriptor, Filter};
 
 use super::stage::{Sun, scene, shining};
 use super::table;
-use crate::support::frames::Coverage;
-use crate::support::gpu::gpu;
-use crate::support::probe::Point;
-use crate::support::random::Random;
-use crate::support::scene::{Mesh, Triangle};
+use crate::fixtures::frames::Coverage;
+use crate::fixtures::gpu::gpu;
 
 const LENGTH: f64 = 4.0;
 

@@ -1,6 +1,9 @@
 //! Tests bounds without volume or without limit, lights without direction, and maps of every size.
 
 use glam::{DVec3, Mat4, Vec3};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
 use wgpu_shadows::{
     Aabb, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, ShadowError,
     report::ViewStatus,
@@ -8,12 +11,9 @@ use wgpu_shadows::{
 
 use super::stage::{Sun, caster};
 use super::table;
-use crate::support::camera::Camera;
-use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};
-use crate::support::gpu::gpu;
-use crate::support::probe::Point;
-use crate::support::scene::Mesh;
-use crate::support::watched::Watched;
+use crate::fixtures::frames::{Coverage, DirectionalFrame, RecordFrame};
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::watched::Watched;
 
 fn cover() -> Aabb {
     Aabb::new(Vec3::new(-2.0, -0.5, -2.0), Vec3::new(2.0, 1.5, 2.0))

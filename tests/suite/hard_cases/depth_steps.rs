@@ -8,8 +8,8 @@ use super::stage::{
     world,
 };
 use super::table;
-use crate::support::frames::Coverage;
-use crate::support::gpu::gpu;
+use crate::fixtures::frames::Coverage;
+use crate::fixtures::gpu::gpu;
 
 const FORMATS: [DepthFormat; 2] = [DepthFormat::Float32, DepthFormat::Unorm16];
 

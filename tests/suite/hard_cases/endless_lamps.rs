@@ -2,16 +2,16 @@
 //! what a camera sees has its shadows, whatever the size of the ground.
 
 use glam::{DVec3, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
 
 use super::stage::scene;
 use super::table;
-use crate::support::gpu::gpu;
-use crate::support::lamp_scenes::{Lamp, Setting, Shade, lamp_over_table, room, street_lamp};
-use crate::support::probe::Point;
-use crate::support::random::Random;
-use crate::support::rounding::U;
-use crate::support::scene::Mesh;
-use crate::support::view_member::member;
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::lamp_scenes::{Lamp, Setting, Shade, lamp_over_table, room, street_lamp};
+use crate::fixtures::rounding::U;
+use crate::fixtures::view_member::member;
 
 /// Half sides of the grounds.
 const GROUNDS: [f32; 6] = [5.0, 50.0, 200.0, 1e3, 1e4, 1e5];

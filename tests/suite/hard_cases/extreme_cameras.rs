@@ -1,15 +1,15 @@
 //! Tests cameras at and beyond the limits of what a camera can be.
 
 use glam::{DVec3, Mat4, Vec3};
+use shadow_support::camera::{Camera, Lens, Pose};
 use wgpu_shadows::{CascadeSplit, DirectionalLight, DirectionalShadowDescriptor, ShadowError};
 
 use super::stage::{Sun, boxes, level, meshes, scene};
 use super::table;
-use crate::support::camera::{Camera, Lens, Pose};
-use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};
-use crate::support::gpu::gpu;
-use crate::support::report::assert_whole;
-use crate::support::view_member::member;
+use crate::fixtures::frames::{Coverage, DirectionalFrame, RecordFrame};
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::report::assert_whole;
+use crate::fixtures::view_member::member;
 
 /// Returns every lens with its name, and whether it is a camera that engines have.
 fn lenses() -> Vec<(String, Lens, bool)> {

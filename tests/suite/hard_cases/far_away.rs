@@ -1,6 +1,8 @@
 //! Tests worlds that lie far from the world's origin, with and without an engine that renders relative to its camera.
 
 use glam::{DMat3, DVec3};
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
 use wgpu_shadows::{
     Aabb, DepthFormat, DirectionalLight, DirectionalShadowDescriptor, ShadowViewUniform,
 };
@@ -9,11 +11,9 @@ use super::stage::{
     MARGIN, Sun, Verdict, any_camera, bounds_of, boxes, level, meshes, scene, shining, world,
 };
 use super::table;
-use crate::support::frames::Coverage;
-use crate::support::probe::Point;
-use crate::support::random::Random;
-use crate::support::rounding::U;
-use crate::support::view_member::with_member;
+use crate::fixtures::frames::Coverage;
+use crate::fixtures::rounding::U;
+use crate::fixtures::view_member::with_member;
 
 const MAP_SIZE: u32 = 256;
 const FLOOR_HALF: f32 = 7.4;

@@ -1,6 +1,9 @@
 //! Tests spot and point lights far from the world's origin, and in other units.
 
 use glam::{DVec3, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
 use wgpu_shadows::{
     Aabb, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowViewUniform, SpotLight, SpotShadow,
     SpotShadowDescriptor,
@@ -8,13 +11,11 @@ use wgpu_shadows::{
 
 use super::stage::{SUM_ERROR, differ, scene};
 use super::table;
-use crate::support::ask::{Ask, record_omni, record_spot};
-use crate::support::frames::{OmniFrame, SpotFrame};
-use crate::support::gpu::gpu;
-use crate::support::local_truth::{Settled, settled};
-use crate::support::probe::Point;
-use crate::support::random::Random;
-use crate::support::scene::{Mesh, Scene};
+use crate::fixtures::ask::{Ask, record_omni, record_spot};
+use crate::fixtures::frames::{OmniFrame, SpotFrame};
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::local_truth::{Settled, settled};
+use crate::fixtures::scene::Scene;
 
 const MAP_SIZE: u32 = 256;
 /// Is a position that is exact in few bits, so that scaling by powers of two does not round it.

@@ -7,6 +7,8 @@
 use std::cell::RefCell;
 
 use glam::{DVec3, Mat4, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
 use wgpu_shadows::{
     Aabb, CascadeSplit, DepthFormat, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowCaster,
@@ -20,15 +22,13 @@ use super::fuzz_values::{
     Counts, Numbers, bias, bounds, filter, matrix, number, numbers, run, size,
 };
 use super::stage::caster;
-use crate::support::ask::{Ask, submitted};
-use crate::support::frames::{
+use crate::fixtures::ask::{Ask, submitted};
+use crate::fixtures::frames::{
     Coverage, DirectionalFrame, OmniFrame, PoolFrame, RecordFrame, SpotFrame,
 };
-use crate::support::gpu::gpu;
-use crate::support::probe::Point;
-use crate::support::report::assert_whole;
-use crate::support::scene::Mesh;
-use crate::support::watched::Watched;
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::report::assert_whole;
+use crate::fixtures::watched::Watched;
 
 /// Whatever a descriptor contains, the object is made or an error says why not; no invalid request reaches the device.
 #[test]

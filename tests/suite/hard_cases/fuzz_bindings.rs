@@ -8,9 +8,9 @@ use wgpu_shadows::{
 
 use super::fuzz_values::{Counts, matrix, run};
 use super::stage::Sun;
-use crate::support::gpu::gpu;
-use crate::support::picture::{color_pass, color_target};
-use crate::support::wgsl;
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::picture::{color_pass, color_target};
+use crate::fixtures::wgsl;
 
 /// Generates letters, digits and underscores, a few of the library's own names, and any text.
 fn name() -> impl Strategy<Value = String> {

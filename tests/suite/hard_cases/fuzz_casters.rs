@@ -4,6 +4,7 @@ use std::cell::RefCell;
 
 use glam::{DVec3, Mat4, Vec3};
 use proptest::prelude::*;
+use shadow_support::probe::Point;
 use wgpu_shadows::{
     Aabb, CasterPipeline, DepthFormat, MeshCaster, caster::CasterPipelineDescriptor,
     caster::CasterVertex, caster::MeshCasterDescriptor, caster::MeshIndices,
@@ -12,9 +13,8 @@ use wgpu_shadows::{
 
 use super::fuzz_values::{Counts, bounds, matrix, run};
 use super::stage::{Sun, shining};
-use crate::support::frames::{Coverage, DirectionalFrame, RecordFrame};
-use crate::support::gpu::gpu;
-use crate::support::probe::Point;
+use crate::fixtures::frames::{Coverage, DirectionalFrame, RecordFrame};
+use crate::fixtures::gpu::gpu;
 
 /// Generates numbers of bytes and of vertices: small, aligned or not, and huge.
 fn count() -> impl Strategy<Value = u32> + Clone {

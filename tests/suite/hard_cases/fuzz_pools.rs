@@ -9,8 +9,8 @@ use wgpu_shadows::{
 };
 
 use super::fuzz_values::{Counts, number, run};
-use crate::support::frames::{PoolFrame, RecordFrame};
-use crate::support::gpu::gpu;
+use crate::fixtures::frames::{PoolFrame, RecordFrame};
+use crate::fixtures::gpu::gpu;
 
 /// Lists what may be done with a pool.
 #[derive(Clone, Debug)]

@@ -9,7 +9,7 @@ use wgpu_shadows::{Aabb, ShadowViewUniform};
 
 use super::fuzz_values::{bias, bounds, filter, matrix, number, run, vector};
 use super::table;
-use crate::support::view_member::{member, with_member};
+use crate::fixtures::view_member::{member, with_member};
 
 /// Generates uniforms of any numbers, and as often whole sizes of maps.
 fn uniform() -> impl Strategy<Value = ShadowViewUniform> {

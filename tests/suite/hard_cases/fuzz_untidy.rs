@@ -7,19 +7,20 @@ use std::cell::RefCell;
 
 use glam::{DVec3, Mat4, Vec3};
 use proptest::prelude::*;
-use wgpu_shadows::caster::caster_shape;
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
+use shadow_support::triangle::{Triangle, occluded};
 use wgpu_shadows::{Aabb, DirectionalShadowDescriptor, ShadowCaster};
 
 use super::fuzz_values::run;
-use super::stage::{Sun, Verdict, shining};
+use super::stage::{Sun, Verdict, settled, shaped, shining};
 use super::table;
-use crate::support::camera::Camera;
-use crate::support::frames::Coverage;
-use crate::support::gpu::gpu;
-use crate::support::probe::Point;
-use crate::support::random::Random;
-use crate::support::scene::{Mesh, Triangle, default_pipeline, occluded};
-use crate::support::watched::Watched;
+use crate::fixtures::frames::Coverage;
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::scene::default_pipeline;
+use crate::fixtures::watched::Watched;
 
 /// Describes a scene of some boxes on a ground.
 #[derive(Clone, Debug)]
@@ -92,11 +93,7 @@ impl Untidy {
     /// Records the scene and compares the visibilities of the ground around the boxes with rays.
     fn verdict(&self) -> Verdict {
         let pipeline = default_pipeline(gpu());
-        let shaped = |mesh: &Mesh| {
-            let mut caster = mesh.caster(gpu(), &pipeline, Mat4::IDENTITY);
-            caster.set_shape(caster_shape(&mesh.positions, &mesh.indices));
-            caster
-        };
+        let shaped = |mesh: &Mesh| shaped(mesh, &pipeline);
         let meshes: Vec<_> = self
             .boxes
             .iter()
@@ -143,13 +140,8 @@ impl Untidy {
             if !camera.sees(position, f64::INFINITY, 0.01) {
                 continue;
             }
-            let here = dark(position);
-            let settled = (0..12).all(|step| {
-                let angle = f64::from(step) * std::f64::consts::TAU / 12.0;
-                dark(position + DVec3::new(angle.cos(), 0.0, angle.sin()) * margin) == here
-            });
             points.push(Point::rounded(position, DVec3::Y));
-            truths.push(settled.then_some(here));
+            truths.push(settled(dark, position, margin));
         }
         if !points.is_empty() {
             for (truth, seen) in truths.iter().zip(sun.ask(&points)) {

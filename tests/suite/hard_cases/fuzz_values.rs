@@ -6,11 +6,11 @@ use std::cell::Cell;
 use glam::{DVec3, Mat4, Vec3, Vec4};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
+use shadow_support::camera::Camera;
 use wgpu_shadows::{Aabb, Bias, CameraView, Filter};
 
 use super::table;
-use crate::support::camera::Camera;
-use crate::support::gpu::gpu;
+use crate::fixtures::gpu::gpu;
 
 /// Runs `test` on that many cases, each within error scopes that must stay empty.
 pub fn run<S: Strategy>(

@@ -3,6 +3,10 @@
 use std::f64::consts::TAU;
 
 use glam::{DMat3, DVec3, EulerRot, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
+use shadow_support::triangle::Triangle;
 use wgpu_shadows::{
     Aabb, Bias, Filter, OmniLight, OmniShadow, OmniShadowDescriptor, SpotLight, SpotShadow,
     SpotShadowDescriptor,
@@ -10,12 +14,9 @@ use wgpu_shadows::{
 
 use super::stage::scene;
 use super::table;
-use crate::support::ask::{Ask, record_omni, record_spot};
-use crate::support::frames::{OmniFrame, SpotFrame};
-use crate::support::gpu::gpu;
-use crate::support::probe::Point;
-use crate::support::random::Random;
-use crate::support::scene::{Mesh, Triangle};
+use crate::fixtures::ask::{Ask, record_omni, record_spot};
+use crate::fixtures::frames::{OmniFrame, SpotFrame};
+use crate::fixtures::gpu::gpu;
 
 /// Half sides of the grounds.
 const GROUNDS: [f64; 6] = [30.0, 1e2, 1e3, 1e4, 1e5, 1e6];

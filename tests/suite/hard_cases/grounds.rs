@@ -2,18 +2,19 @@
 //! shadow.
 
 use glam::{DVec3, Mat4, Vec3};
-use wgpu_shadows::caster::caster_shape;
+use shadow_support::camera::{Camera, Lens, Pose};
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
+use shadow_support::triangle::{Triangle, occluded};
 use wgpu_shadows::{Aabb, DirectionalShadowDescriptor, MeshCaster, ShadowCaster, Stability};
 
-use super::stage::{SUM_ERROR, Sun, Verdict, differ, shining};
+use super::stage::{SUM_ERROR, Sun, Verdict, differ, settled, shaped, shining};
 use super::table;
-use crate::support::camera::{Camera, Lens, Pose};
-use crate::support::frames::Coverage;
-use crate::support::gpu::gpu;
-use crate::support::probe::Point;
-use crate::support::random::Random;
-use crate::support::scene::{Mesh, Triangle, default_pipeline, occluded};
-use crate::support::watched::Watched;
+use crate::fixtures::frames::Coverage;
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::scene::default_pipeline;
+use crate::fixtures::watched::Watched;
 
 const LIGHT: DVec3 = DVec3::new(0.527, -0.738, -0.4216);
 const LOW_LIGHT: DVec3 = DVec3::new(0.93, -0.31, -0.2);
@@ -40,15 +41,9 @@ fn meshes(half: f32, thickness: f32, sunk: f32) -> Vec<Mesh> {
     ]
 }
 
-/// Returns casters whose shapes are those that `caster_shape` finds for their meshes.
 fn casters(meshes: &[Mesh]) -> Vec<MeshCaster> {
     let pipeline = default_pipeline(gpu());
-    let caster = |mesh: &Mesh| {
-        let mut caster = mesh.caster(gpu(), &pipeline, Mat4::IDENTITY);
-        caster.set_shape(caster_shape(&mesh.positions, &mesh.indices));
-        caster
-    };
-    meshes.iter().map(caster).collect()
+    meshes.iter().map(|mesh| shaped(mesh, &pipeline)).collect()
 }
 
 fn triangles(meshes: &[Mesh]) -> Vec<Triangle> {
@@ -61,6 +56,13 @@ fn listed(casters: &[MeshCaster]) -> Vec<&dyn ShadowCaster> {
         .iter()
         .map(|caster| caster as &dyn ShadowCaster)
         .collect()
+}
+
+/// Records a frame of the casters, and returns the side of a texel.
+fn record(sun: &mut Sun, light: DVec3, coverage: Coverage, casters: &[MeshCaster]) -> f64 {
+    let list = listed(casters);
+    sun.record(DVec3::ZERO, shining(light), coverage, &list, &[]);
+    sun.texel()
 }
 
 fn near_camera() -> Camera {
@@ -91,13 +93,8 @@ fn around_robot(sun: &Sun, triangles: &[Triangle], light: DVec3, margin: f64) ->
             continue;
         }
         let dark = |at: DVec3| occluded(triangles, at, -light, 0.0);
-        let here = dark(position);
-        let settled = (0..12).all(|step| {
-            let angle = f64::from(step) * std::f64::consts::TAU / 12.0;
-            dark(position + DVec3::new(angle.cos(), 0.0, angle.sin()) * margin) == here
-        });
         points.push(Point::rounded(position, DVec3::Y));
-        truths.push(settled.then_some(here));
+        truths.push(settled(dark, position, margin));
     }
     for (truth, seen) in truths.iter().zip(sun.ask(&points)) {
         verdict.count(*truth, seen);
@@ -123,14 +120,7 @@ fn a_ground_of_any_size_leaves_shadows_sharp() {
             let casters = casters(&meshes);
             let mut sun = Sun::new(&DirectionalShadowDescriptor::default());
             let coverage = Coverage::Camera(near_camera().view());
-            sun.record(
-                DVec3::ZERO,
-                shining(LIGHT),
-                coverage,
-                &listed(&casters),
-                &[],
-            );
-            coarsest = coarsest.max(sun.texel());
+            coarsest = coarsest.max(record(&mut sun, LIGHT, coverage, &casters));
             let verdict = around_robot(&sun, &triangles(&meshes[1..]), LIGHT, SETTLED);
             let words = format!("half side {half}, {thickness} thick, feet {sunk} below");
             verdict.assert_right(&words);
@@ -328,14 +318,7 @@ fn an_orthographic_camera_may_be_far_away() {
                 ..Default::default()
             });
             let coverage = Coverage::Camera(camera.view());
-            sun.record(
-                DVec3::ZERO,
-                shining(LIGHT),
-                coverage,
-                &listed(&casters),
-                &[],
-            );
-            coarsest = coarsest.max(sun.texel());
+            coarsest = coarsest.max(record(&mut sun, LIGHT, coverage, &casters));
             let verdict = around_robot(&sun, &triangles(&meshes[1..]), LIGHT, 2.0 * SETTLED);
             verdict.assert_right(&format!("{stability:?} from {away}"));
             all.add(&verdict);

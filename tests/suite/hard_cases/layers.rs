@@ -1,15 +1,15 @@
 //! Tests casters above casters: light that one of them blocks stays blocked.
 
 use glam::{DVec3, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
 use wgpu_shadows::{Aabb, Bias, DirectionalShadowDescriptor, Filter};
 
 use super::stage::{SUM_ERROR, Sun, scene, shining};
 use super::table;
-use crate::support::frames::Coverage;
-use crate::support::gpu::gpu;
-use crate::support::probe::Point;
-use crate::support::random::Random;
-use crate::support::scene::Mesh;
+use crate::fixtures::frames::Coverage;
+use crate::fixtures::gpu::gpu;
 
 /// A roof lies over a shelf over a floor, with a deep pit below: the floor and the shelf are dark to the last bit under
 /// every filter and derived bias, however thin roof and shelf are and however close to each other, as long as the

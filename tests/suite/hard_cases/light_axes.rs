@@ -1,14 +1,14 @@
 //! Tests light along an axis of the world, and slightly off it: no direction is special.
 
 use glam::{DMat3, DVec3};
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
 
 use super::stage::{Sun, bounds_of, boxes, differ, meshes, scene, shining};
 use super::table;
-use crate::support::frames::Coverage;
-use crate::support::gpu::gpu;
-use crate::support::probe::Point;
-use crate::support::random::Random;
-use crate::support::rounding::U;
+use crate::fixtures::frames::Coverage;
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::rounding::U;
 
 const MAP_SIZE: u32 = 256;
 const FLOOR_HALF: f32 = 6.1;

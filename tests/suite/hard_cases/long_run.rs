@@ -4,6 +4,8 @@
 //! `SHADOW_LONG=1` runs ten thousand frames instead of three hundred.
 
 use glam::{DVec3, Mat4, Vec3};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
 use wgpu::util::DeviceExt;
 use wgpu_shadows::{
     Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
@@ -14,12 +16,10 @@ use wgpu_shadows::{
 };
 
 use super::table;
-use crate::support::camera::Camera;
-use crate::support::frames::{
+use crate::fixtures::frames::{
     Coverage, DirectionalFrame, OmniFrame, PoolFrame, RecordFrame, SpotFrame,
 };
-use crate::support::gpu::gpu;
-use crate::support::scene::Mesh;
+use crate::fixtures::gpu::gpu;
 
 /// Is the number of frames after which every light is made again, in another size.
 const LIFE: u32 = 25;

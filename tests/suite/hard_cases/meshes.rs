@@ -1,17 +1,17 @@
 //! Tests meshes that are mirrored, open, wound the other way, or full of triangles without area.
 
 use glam::{DVec3, Mat4, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::readback;
 use wgpu_shadows::{
     Aabb, CasterPipeline, DirectionalLight, ShadowCaster, caster::CasterPipelineDescriptor,
 };
 
 use super::stage::Sun;
 use super::table;
-use crate::support::frames::Coverage;
-use crate::support::gpu::gpu;
-use crate::support::readback;
-use crate::support::rounding::U;
-use crate::support::scene::Mesh;
+use crate::fixtures::frames::Coverage;
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::rounding::U;
 
 /// Is the number of texels per side of the map.
 const SIZE: usize = 96;

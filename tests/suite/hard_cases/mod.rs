@@ -34,4 +34,4 @@ mod steady;
 mod thin_casters;
 mod wall_foot;
 
-use crate::support::table;
+use crate::fixtures::table;

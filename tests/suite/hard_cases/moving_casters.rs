@@ -1,6 +1,8 @@
 //! Tests that the shadows of static casters do not change while other casters move.
 
 use glam::{DVec3, Mat4, Quat, Vec3};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
 use wgpu_shadows::{
     DirectionalShadowDescriptor, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor,
     ShadowCaster,
@@ -8,11 +10,10 @@ use wgpu_shadows::{
 
 use super::stage::{Sun, level, shining};
 use super::table;
-use crate::support::ask::{Ask, record_omni};
-use crate::support::camera::Camera;
-use crate::support::frames::{Coverage, OmniFrame};
-use crate::support::gpu::gpu;
-use crate::support::scene::{Mesh, default_pipeline};
+use crate::fixtures::ask::{Ask, record_omni};
+use crate::fixtures::frames::{Coverage, OmniFrame};
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::scene::default_pipeline;
 
 const FRAMES: u32 = 300;
 
@@ -88,6 +89,13 @@ impl Changes {
             self.sizes,
             self.coarsest / self.finest
         )
+    }
+
+    /// Asserts that the still shadow changed in at most one frame of a hundred, and returns the words.
+    fn few(&self, name: &str) -> String {
+        let words = self.words(name);
+        assert!(self.frames * 100 <= FRAMES, "{words}");
+        words
     }
 
     fn texel(&mut self, texel: f64, last: f64) {
@@ -174,12 +182,7 @@ fn still_shadows_stay_still_beside_moving_casters() {
             },
             || sun.borrow().ask(&points),
         );
-        words.push(changes.words(motion.name));
-        assert!(
-            changes.frames * 100 <= FRAMES,
-            "{}",
-            changes.words(motion.name)
-        );
+        words.push(changes.few(motion.name));
     }
     table::record(
         "casters that move beside a still box under a sun, 300 frames each",
@@ -226,12 +229,7 @@ fn still_shadows_of_a_lamp_stay_still_beside_moving_casters() {
             },
             || ask.points(gpu(), &points),
         );
-        words.push(changes.words(motion.name));
-        assert!(
-            changes.frames * 100 <= FRAMES,
-            "{}",
-            changes.words(motion.name)
-        );
+        words.push(changes.few(motion.name));
     }
     table::record(
         "casters that move beside a still box under a lamp, 300 frames each",

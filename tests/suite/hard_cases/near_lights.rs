@@ -1,6 +1,9 @@
 //! Tests spot and point lights very close above a surface: it stays lit, and what is on it casts.
 
 use glam::{DVec3, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
 use wgpu_shadows::{
     Aabb, Bias, Filter, OmniLight, OmniShadow, OmniShadowDescriptor, SpotLight, SpotShadow,
     SpotShadowDescriptor,
@@ -8,12 +11,9 @@ use wgpu_shadows::{
 
 use super::stage::scene;
 use super::table;
-use crate::support::ask::{Ask, record_omni, record_spot};
-use crate::support::frames::{OmniFrame, SpotFrame};
-use crate::support::gpu::gpu;
-use crate::support::probe::Point;
-use crate::support::random::Random;
-use crate::support::scene::Mesh;
+use crate::fixtures::ask::{Ask, record_omni, record_spot};
+use crate::fixtures::frames::{OmniFrame, SpotFrame};
+use crate::fixtures::gpu::gpu;
 
 const RANGE: f64 = 10.0;
 const EVERYWHERE: [Aabb; 1] = [Aabb::new(Vec3::splat(-30.0), Vec3::splat(30.0))];

@@ -2,6 +2,11 @@
 //! of them is cut off.
 
 use glam::{DVec3, Vec3};
+use shadow_support::camera::{Camera, Lens, Pose};
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
+use shadow_support::triangle::occluded;
 use wgpu_shadows::{
     Aabb, Bias, Filter, OmniLight, OmniShadow, OmniShadowDescriptor, SpotLight, SpotShadow,
     SpotShadowDescriptor,
@@ -9,14 +14,11 @@ use wgpu_shadows::{
 
 use super::stage::{SUM_ERROR, Sun, differ, scene, shining};
 use super::table;
-use crate::support::ask::{Ask, record_omni, record_spot};
-use crate::support::camera::{Camera, Lens, Pose};
-use crate::support::frames::{Coverage, OmniFrame, SpotFrame};
-use crate::support::gpu::gpu;
-use crate::support::local_truth::settled;
-use crate::support::probe::Point;
-use crate::support::random::Random;
-use crate::support::scene::{Mesh, Scene, occluded};
+use crate::fixtures::ask::{Ask, record_omni, record_spot};
+use crate::fixtures::frames::{Coverage, OmniFrame, SpotFrame};
+use crate::fixtures::gpu::gpu;
+use crate::fixtures::local_truth::settled;
+use crate::fixtures::scene::Scene;
 
 /// Returns a blade from below the floor to `top`, one triangle, which crosses every plane in between.
 fn blade(x: f32, z: f32, top: f32) -> Mesh {
@@ -148,7 +150,7 @@ fn nothing_is_cut_off_beside_a_light() {
     let mut random = Random::new(89);
     let tangent = 3.5 * 2.0_f64.sqrt() * 2.0 / f64::from(map_size);
     let (mut wrong, mut dark, mut lit) = (0, 0, 0);
-    let mut count = |truth: &crate::support::local_truth::Settled, seen: &[f32]| {
+    let mut count = |truth: &crate::fixtures::local_truth::Settled, seen: &[f32]| {
         for (is_dark, seen) in truth.dark.iter().zip(seen) {
             let right = if *is_dark { 0.0 } else { 1.0 };
             wrong += usize::from(differ(*seen, right, SUM_ERROR));

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::support::frames::Coverage;
+use crate::fixtures::frames::Coverage;
 
 use super::stage::{
     MARGIN, Sun, Verdict, any_camera, bounds_of, boxes, level, meshes, scene, shining, world,

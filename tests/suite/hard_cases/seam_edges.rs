@@ -2,16 +2,16 @@
 //! its faces.
 
 use glam::{DVec3, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
 use wgpu_shadows::{Aabb, Filter, OmniLight, OmniShadow, OmniShadowDescriptor};
 
 use super::stage::scene;
 use super::table;
-use crate::support::ask::{Ask, record_omni};
-use crate::support::frames::OmniFrame;
-use crate::support::gpu::gpu;
-use crate::support::probe::Point;
-use crate::support::random::Random;
-use crate::support::scene::Mesh;
+use crate::fixtures::ask::{Ask, record_omni};
+use crate::fixtures::frames::OmniFrame;
+use crate::fixtures::gpu::gpu;
 
 const EVERYWHERE: [Aabb; 1] = [Aabb::new(Vec3::splat(-20.0), Vec3::splat(20.0))];
 const MAP_SIZE: u32 = 256;

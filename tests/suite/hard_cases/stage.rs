@@ -1,18 +1,21 @@
 //! Provides a sun, its probe, and boxes on a floor whose truth is known.
 
 use glam::{DMat3, DVec3, Mat4, Vec3};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
 use wgpu_shadows::{
-    Aabb, CascadeSplit, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    ShadowCaster, report::ShadowReport,
+    Aabb, CascadeSplit, CasterPipeline, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, MeshCaster, ShadowCaster, caster::caster_shape,
+    report::ShadowReport,
 };
 
-use crate::support::camera::Camera;
-use crate::support::frames::{Coverage, DirectionalFrame};
-use crate::support::gpu::{Gpu, gpu};
-use crate::support::probe::{Point, SunProbe, record};
-use crate::support::random::Random;
-use crate::support::random_scene::World;
-use crate::support::scene::{Mesh, Scene, default_pipeline};
+use crate::fixtures::frames::{Coverage, DirectionalFrame};
+use crate::fixtures::gpu::{Gpu, gpu};
+use crate::fixtures::probe::{SunProbe, record};
+use crate::fixtures::random_scene::World;
+use crate::fixtures::scene::{Scene, default_pipeline};
 
 /// Bounds the rounding of a sum of at most 64 weights in f32, stretched three times by the default's sharpness.
 pub const SUM_ERROR: f32 = 192.0 * f32::EPSILON;
@@ -135,8 +138,25 @@ pub fn scene(meshes: &[Mesh]) -> Scene {
 }
 
 /// Returns a mesh as the only caster.
-pub fn caster(gpu: &Gpu, mesh: &Mesh, transform: Mat4) -> wgpu_shadows::MeshCaster {
+pub fn caster(gpu: &Gpu, mesh: &Mesh, transform: Mat4) -> MeshCaster {
     mesh.caster(gpu, &default_pipeline(gpu), transform)
+}
+
+/// Returns a caster whose shape is the one that `caster_shape` finds for its mesh.
+pub fn shaped(mesh: &Mesh, pipeline: &CasterPipeline) -> MeshCaster {
+    let mut caster = mesh.caster(gpu(), pipeline, Mat4::IDENTITY);
+    caster.set_shape(caster_shape(&mesh.positions, &mesh.indices));
+    caster
+}
+
+/// Returns what `dark` says of a position on level ground, if it says the same `margin` around it.
+pub fn settled(dark: impl Fn(DVec3) -> bool, position: DVec3, margin: f64) -> Option<bool> {
+    let here = dark(position);
+    let is_settled = (0..12).all(|step| {
+        let angle = f64::from(step) * std::f64::consts::TAU / 12.0;
+        dark(position + DVec3::new(angle.cos(), 0.0, angle.sin()) * margin) == here
+    });
+    is_settled.then_some(here)
 }
 
 /// Returns whether two visibilities are further apart than `band`, or are NaN.

@@ -3,15 +3,15 @@
 use std::f64::consts::TAU;
 
 use glam::{DMat3, DVec3};
+use shadow_support::camera::Camera;
+use shadow_support::mesh::Mesh;
+use shadow_support::random::Random;
 use wgpu_shadows::{CascadeSplit, DirectionalShadowDescriptor, ShadowView};
 
 use super::stage::{Sun, boxes, differ, level, meshes, scene, shining, world};
 use super::table;
-use crate::support::camera::Camera;
-use crate::support::frames::Coverage;
-use crate::support::random::Random;
-use crate::support::rounding::U;
-use crate::support::scene::Mesh;
+use crate::fixtures::frames::Coverage;
+use crate::fixtures::rounding::U;
 
 const LIGHT: DVec3 = DVec3::new(0.37, -1.0, 0.21);
 

@@ -2,15 +2,15 @@
 //! not change.
 
 use glam::{DMat2, DVec2, DVec3, Vec2, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
 use wgpu_shadows::{Aabb, DirectionalShadowDescriptor, Filter};
 
 use super::stage::{Sun, scene, shining};
 use super::table;
-use crate::support::frames::Coverage;
-use crate::support::gpu::gpu;
-use crate::support::probe::Point;
-use crate::support::random::Random;
-use crate::support::scene::Mesh;
+use crate::fixtures::frames::Coverage;
+use crate::fixtures::gpu::gpu;
 
 const TEXEL: f64 = 1.0 / 16.0;
 const BARS_ACROSS: i32 = 34;

@@ -3,6 +3,9 @@
 use std::f64::consts::SQRT_2;
 
 use glam::{DVec2, DVec3, Vec3};
+use shadow_support::mesh::Mesh;
+use shadow_support::probe::Point;
+use shadow_support::random::Random;
 use wgpu_shadows::{
     Aabb, Bias, CasterPipeline, DirectionalShadowDescriptor, Filter, ShadowCaster,
     caster::CasterPipelineDescriptor,
@@ -10,11 +13,8 @@ use wgpu_shadows::{
 
 use super::stage::{Sun, shining};
 use super::table;
-use crate::support::frames::Coverage;
-use crate::support::gpu::gpu;
-use crate::support::probe::Point;
-use crate::support::random::Random;
-use crate::support::scene::Mesh;
+use crate::fixtures::frames::Coverage;
+use crate::fixtures::gpu::gpu;
 
 /// Is the number of receivers per texel, on lines that lead away from the wall.
 const STEPS: usize = 16;
