@@ -20,8 +20,10 @@ fn shadow_box_rows(
     kernel: ShadowKernel,
     row: f32,
 ) -> vec2<f32> {
-    let depths = shadow_texels_by_4(map, map_sampler, receiver, kernel.base + vec2<f32>(0.0, row + 1.0));
+    let corner = kernel.base + vec2<f32>(0.0, row + 1.0);
     let rows = shadow_kernel_rows(receiver, kernel, row);
-    return shadow_lit_rows(receiver, rows, -1.0, vec2<f32>(1.0, 1.0), depths[0])
-        + shadow_lit_rows(receiver, rows, 1.0, vec2<f32>(1.0, 0.0), depths[1]);
+    let left = shadow_texels(map, map_sampler, receiver, corner);
+    let sum = shadow_lit_rows(receiver, rows, -1.0, vec2<f32>(1.0, 1.0), left, vec2<f32>(0.0));
+    let right = shadow_texels_2_0(map, map_sampler, receiver, corner);
+    return shadow_lit_rows(receiver, rows, 1.0, vec2<f32>(1.0, 0.0), right, sum);
 }

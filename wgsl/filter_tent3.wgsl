@@ -8,24 +8,20 @@
 // Returns the visibility of the light, in [0, 1].
 fn shadow_filter_tent3(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver) -> f32 {
     let kernel = shadow_kernel(receiver);
-    let s = kernel.fraction.y;
-    let upper = shadow_tent3_rows(map, map_sampler, receiver, kernel, -1.0);
-    let lower = shadow_tent3_rows(map, map_sampler, receiver, kernel, 1.0);
-    let sum = dot(upper, vec2<f32>(1.0 - s, 2.0 - s)) + dot(lower, vec2<f32>(1.0 + s, s));
+    let s = kernel.fraction;
+    // Are the weights of pairs of columns.
+    let left = vec2<f32>(1.0 - s.x, 2.0 - s.x);
+    let right = vec2<f32>(1.0 + s.x, s.x);
+    let corner = kernel.base;
+    var rows = shadow_kernel_rows(receiver, kernel, -1.0);
+    var lit = shadow_lit_rows(receiver, rows, -1.0, left, shadow_texels(map, map_sampler, receiver, corner), vec2<f32>(0.0));
+    lit = shadow_lit_rows(receiver, rows, 1.0, right, shadow_texels_2_0(map, map_sampler, receiver, corner), lit);
+    var sum = (1.0 - s.y) * lit.x;
+    sum += (2.0 - s.y) * lit.y;
+    rows = shadow_kernel_rows(receiver, kernel, 1.0);
+    lit = shadow_lit_rows(receiver, rows, -1.0, left, shadow_texels_0_2(map, map_sampler, receiver, corner), vec2<f32>(0.0));
+    lit = shadow_lit_rows(receiver, rows, 1.0, right, shadow_texels_2_2(map, map_sampler, receiver, corner), lit);
+    sum += (1.0 + s.y) * lit.x;
+    sum += s.y * lit.y;
     return shadow_ramped(receiver, sum);
-}
-
-// Returns the weighted sums of the comparisons in rows `row` and `row + 1`, times four.
-fn shadow_tent3_rows(
-    map: ShadowMap,
-    map_sampler: sampler,
-    receiver: ShadowReceiver,
-    kernel: ShadowKernel,
-    row: f32,
-) -> vec2<f32> {
-    let s = kernel.fraction.x;
-    let depths = shadow_texels_by_4(map, map_sampler, receiver, kernel.base + vec2<f32>(0.0, row + 1.0));
-    let rows = shadow_kernel_rows(receiver, kernel, row);
-    return shadow_lit_rows(receiver, rows, -1.0, vec2<f32>(1.0 - s, 2.0 - s), depths[0])
-        + shadow_lit_rows(receiver, rows, 1.0, vec2<f32>(1.0 + s, s), depths[1]);
 }

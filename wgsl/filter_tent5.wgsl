@@ -7,28 +7,29 @@
 // Returns the visibility of the light, in [0, 1].
 fn shadow_filter_tent5(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver) -> f32 {
     let kernel = shadow_kernel(receiver);
-    let s = kernel.fraction.y;
-    let upper = shadow_tent5_rows(map, map_sampler, receiver, kernel, -2.0);
-    let middle = shadow_tent5_rows(map, map_sampler, receiver, kernel, 0.0);
-    let lower = shadow_tent5_rows(map, map_sampler, receiver, kernel, 2.0);
-    let sum = dot(upper, vec2<f32>(1.0 - s, 3.0 - 2.0 * s))
-        + dot(middle, vec2<f32>(4.0 - s, 3.0 + s))
-        + dot(lower, vec2<f32>(1.0 + 2.0 * s, s));
+    let s = kernel.fraction;
+    // Are the weights of pairs of columns.
+    let left = vec2<f32>(1.0 - s.x, 3.0 - 2.0 * s.x);
+    let middle = vec2<f32>(4.0 - s.x, 3.0 + s.x);
+    let right = vec2<f32>(1.0 + 2.0 * s.x, s.x);
+    let corner = kernel.base - 1.0;
+    var rows = shadow_kernel_rows(receiver, kernel, -2.0);
+    var lit = shadow_lit_rows(receiver, rows, -2.0, left, shadow_texels(map, map_sampler, receiver, corner), vec2<f32>(0.0));
+    lit = shadow_lit_rows(receiver, rows, 0.0, middle, shadow_texels_2_0(map, map_sampler, receiver, corner), lit);
+    lit = shadow_lit_rows(receiver, rows, 2.0, right, shadow_texels_4_0(map, map_sampler, receiver, corner), lit);
+    var sum = (1.0 - s.y) * lit.x;
+    sum += (3.0 - 2.0 * s.y) * lit.y;
+    rows = shadow_kernel_rows(receiver, kernel, 0.0);
+    lit = shadow_lit_rows(receiver, rows, -2.0, left, shadow_texels_0_2(map, map_sampler, receiver, corner), vec2<f32>(0.0));
+    lit = shadow_lit_rows(receiver, rows, 0.0, middle, shadow_texels_2_2(map, map_sampler, receiver, corner), lit);
+    lit = shadow_lit_rows(receiver, rows, 2.0, right, shadow_texels_4_2(map, map_sampler, receiver, corner), lit);
+    sum += (4.0 - s.y) * lit.x;
+    sum += (3.0 + s.y) * lit.y;
+    rows = shadow_kernel_rows(receiver, kernel, 2.0);
+    lit = shadow_lit_rows(receiver, rows, -2.0, left, shadow_texels_0_4(map, map_sampler, receiver, corner), vec2<f32>(0.0));
+    lit = shadow_lit_rows(receiver, rows, 0.0, middle, shadow_texels_2_4(map, map_sampler, receiver, corner), lit);
+    lit = shadow_lit_rows(receiver, rows, 2.0, right, shadow_texels_4_4(map, map_sampler, receiver, corner), lit);
+    sum += (1.0 + 2.0 * s.y) * lit.x;
+    sum += s.y * lit.y;
     return shadow_ramped(receiver, sum);
-}
-
-// Returns the weighted sums of the comparisons in rows `row` and `row + 1`, times twelve.
-fn shadow_tent5_rows(
-    map: ShadowMap,
-    map_sampler: sampler,
-    receiver: ShadowReceiver,
-    kernel: ShadowKernel,
-    row: f32,
-) -> vec2<f32> {
-    let s = kernel.fraction.x;
-    let depths = shadow_texels_by_6(map, map_sampler, receiver, kernel.base + vec2<f32>(-1.0, row + 1.0));
-    let rows = shadow_kernel_rows(receiver, kernel, row);
-    return shadow_lit_rows(receiver, rows, -2.0, vec2<f32>(1.0 - s, 3.0 - 2.0 * s), depths[0])
-        + shadow_lit_rows(receiver, rows, 0.0, vec2<f32>(4.0 - s, 3.0 + s), depths[1])
-        + shadow_lit_rows(receiver, rows, 2.0, vec2<f32>(1.0 + 2.0 * s, s), depths[2]);
 }

@@ -28,18 +28,23 @@ fn shadow_kernel_rows(receiver: ShadowReceiver, kernel: ShadowKernel, row: f32) 
 
 // Compares a block of 2x2 texels, whose left column is `column` columns from the kernel's base. `rows` is the depth of
 // the plane in its two rows, in the base's column, and `weights` the weight of its two columns. Returns for each row
-// the sum of the weights of the lit texels.
+// `before`, to which the weights of the lit texels are added.
 fn shadow_lit_rows(
     receiver: ShadowReceiver,
     rows: vec2<f32>,
     column: f32,
     weights: vec2<f32>,
     depths: vec4<f32>,
+    before: vec2<f32>,
 ) -> vec2<f32> {
-    let along = receiver.gradient.x * vec2<f32>(column, column + 1.0);
-    let references = max(vec4<f32>(rows.x + along, rows.y + along), vec4<f32>(receiver.depth));
-    let lit = select(vec4<f32>(0.0), weights.xyxy, references >= depths);
-    return vec2<f32>(lit.x + lit.y, lit.z + lit.w);
+    // Written by components, fewer values are held at once than with vectors.
+    let left = receiver.gradient.x * column;
+    let right = receiver.gradient.x * (column + 1.0);
+    var upper = before.x + select(0.0, weights.x, max(rows.x + left, receiver.depth) >= depths.x);
+    upper += select(0.0, weights.y, max(rows.x + right, receiver.depth) >= depths.y);
+    var lower = before.y + select(0.0, weights.x, max(rows.y + left, receiver.depth) >= depths.z);
+    lower += select(0.0, weights.y, max(rows.y + right, receiver.depth) >= depths.w);
+    return vec2<f32>(upper, lower);
 }
 
 // Returns the visibility that a kernel's weighted sum of lit texels means, with a sharper edge: the ramp is stretched

@@ -16,47 +16,66 @@ fn shadow_texels(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver,
     return textureGather(map, map_sampler, corner * receiver.uv_per_texel, receiver.layer).wzxy;
 }
 
-// Returns two rows of four texels, as two blocks of which the first is around `corner`.
-fn shadow_texels_by_4(
-    map: ShadowMap,
-    map_sampler: sampler,
-    receiver: ShadowReceiver,
-    corner: vec2<f32>,
-) -> array<vec4<f32>, 2> {
+// Return the four texels that lie so many columns to the right of those around `corner`, and so many rows below them.
+// WGSL takes the offset of a gather only as a constant, and constants keep registers free: sums of coordinates, which
+// several gathers share, would be held until the last of them.
+fn shadow_texels_2_0(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
     let uv = corner * receiver.uv_per_texel;
-    return array<vec4<f32>, 2>(
-        textureGather(map, map_sampler, uv, receiver.layer).wzxy,
-        textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(2, 0)).wzxy,
-    );
+    return textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(2, 0)).wzxy;
 }
-
-// Returns two rows of six texels, as three blocks of which the first is around `corner`.
-fn shadow_texels_by_6(
-    map: ShadowMap,
-    map_sampler: sampler,
-    receiver: ShadowReceiver,
-    corner: vec2<f32>,
-) -> array<vec4<f32>, 3> {
+fn shadow_texels_4_0(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
     let uv = corner * receiver.uv_per_texel;
-    return array<vec4<f32>, 3>(
-        textureGather(map, map_sampler, uv, receiver.layer).wzxy,
-        textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(2, 0)).wzxy,
-        textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(4, 0)).wzxy,
-    );
+    return textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(4, 0)).wzxy;
 }
-
-// Returns two rows of eight texels, as four blocks of which the first is around `corner`.
-fn shadow_texels_by_8(
-    map: ShadowMap,
-    map_sampler: sampler,
-    receiver: ShadowReceiver,
-    corner: vec2<f32>,
-) -> array<vec4<f32>, 4> {
+fn shadow_texels_6_0(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
     let uv = corner * receiver.uv_per_texel;
-    return array<vec4<f32>, 4>(
-        textureGather(map, map_sampler, uv, receiver.layer).wzxy,
-        textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(2, 0)).wzxy,
-        textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(4, 0)).wzxy,
-        textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(6, 0)).wzxy,
-    );
+    return textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(6, 0)).wzxy;
+}
+fn shadow_texels_0_2(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
+    let uv = corner * receiver.uv_per_texel;
+    return textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(0, 2)).wzxy;
+}
+fn shadow_texels_2_2(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
+    let uv = corner * receiver.uv_per_texel;
+    return textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(2, 2)).wzxy;
+}
+fn shadow_texels_4_2(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
+    let uv = corner * receiver.uv_per_texel;
+    return textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(4, 2)).wzxy;
+}
+fn shadow_texels_6_2(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
+    let uv = corner * receiver.uv_per_texel;
+    return textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(6, 2)).wzxy;
+}
+fn shadow_texels_0_4(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
+    let uv = corner * receiver.uv_per_texel;
+    return textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(0, 4)).wzxy;
+}
+fn shadow_texels_2_4(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
+    let uv = corner * receiver.uv_per_texel;
+    return textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(2, 4)).wzxy;
+}
+fn shadow_texels_4_4(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
+    let uv = corner * receiver.uv_per_texel;
+    return textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(4, 4)).wzxy;
+}
+fn shadow_texels_6_4(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
+    let uv = corner * receiver.uv_per_texel;
+    return textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(6, 4)).wzxy;
+}
+fn shadow_texels_0_6(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
+    let uv = corner * receiver.uv_per_texel;
+    return textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(0, 6)).wzxy;
+}
+fn shadow_texels_2_6(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
+    let uv = corner * receiver.uv_per_texel;
+    return textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(2, 6)).wzxy;
+}
+fn shadow_texels_4_6(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
+    let uv = corner * receiver.uv_per_texel;
+    return textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(4, 6)).wzxy;
+}
+fn shadow_texels_6_6(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
+    let uv = corner * receiver.uv_per_texel;
+    return textureGather(map, map_sampler, uv, receiver.layer, vec2<i32>(6, 6)).wzxy;
 }

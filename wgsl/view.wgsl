@@ -109,20 +109,34 @@ fn shadow_light_from_render(view: ShadowViewUniform, vector: vec3<f32>) -> vec3<
 
 // Returns `visibility` faded to light toward the end of a directional light's shadows.
 fn shadow_limited_by_depth(view: ShadowViewUniform, position: vec3<f32>, visibility: f32) -> f32 {
-    return shadow_faded(dot(view.limit.xyz, position) + view.limit.w, visibility);
+    return shadow_faded(shadow_weight_by_depth(view, position), visibility);
 }
 
 // Returns `visibility` faded to light toward the end of a local light's range.
 fn shadow_limited_by_distance(view: ShadowViewUniform, position: vec3<f32>, visibility: f32) -> f32 {
-    return shadow_faded(view.limit.w - view.limit.x * length(position - view.anchor), visibility);
+    return shadow_faded(shadow_weight_by_distance(view, position), visibility);
 }
 
-// Returns `visibility` unchanged, for lights whose shadows do not fade.
-fn shadow_not_limited(view: ShadowViewUniform, position: vec3<f32>, visibility: f32) -> f32 {
-    return visibility;
+// Returns the weight by which a directional light's shadows fade. A lookup takes it first, so that it does not hold the
+// position in registers any longer.
+fn shadow_weight_by_depth(view: ShadowViewUniform, position: vec3<f32>) -> f32 {
+    return dot(position, view.limit.xyz) + view.limit.w;
+}
+
+// Returns the weight by which a local light's shadows fade.
+fn shadow_weight_by_distance(view: ShadowViewUniform, position: vec3<f32>) -> f32 {
+    return view.limit.w - view.limit.x * length(position - view.anchor);
 }
 
 // Returns `visibility` where the weight is one or more, 1 where it is zero or less, and the interpolation in between.
 fn shadow_faded(weight: f32, visibility: f32) -> f32 {
     return 1.0 + clamp(weight, 0.0, 1.0) * (visibility - 1.0);
+}
+
+// Are the same for lights whose shadows do not fade.
+fn shadow_not_weighted(view: ShadowViewUniform, position: vec3<f32>) -> f32 {
+    return 1.0;
+}
+fn shadow_not_faded(weight: f32, visibility: f32) -> f32 {
+    return visibility;
 }

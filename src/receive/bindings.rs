@@ -168,7 +168,14 @@ fn check_names(lights: &NamedMaps<'_>) -> Result<(), BindingsError> {
 /// Returns whether an identifier that is emitted for a light of this name could coincide with one of the library's own:
 /// of a module, a sampler, or the map, views or functions of another light.
 fn is_taken(name: &str) -> bool {
-    const PREFIXES: [&str; 6] = ["view_", "views_", "map_", "place_of_", "axes_of_", "cascade_"];
+    const PREFIXES: [&str; 6] = [
+        "view_",
+        "views_",
+        "map_",
+        "place_of_",
+        "axes_of_",
+        "cascade_",
+    ];
     let identifiers = PREFIXES.map(|prefix| format!("shadow_{prefix}{name}"));
     let own = format!("shadow_{name}");
     let in_modules = shader::MODULES.iter().any(|module| {

@@ -138,10 +138,12 @@ fn visibility_function(name: &str, maps: &SampledMaps<'_>) -> String {
     let bias = &format!("{}_{kind}", sampling.bias.scheme(sampling.filter).name());
     let (filter, sampler) = sampling.filter.wgsl();
     let (sampler, _) = sampler_names(sampler);
-    let limit = match maps.selection {
-        Selection::Cascades => "limited_by_depth",
-        Selection::OneView | Selection::CubeFace if sampling.fade > 0.0 => "limited_by_distance",
-        Selection::OneView | Selection::CubeFace => "not_limited",
+    let (weight, faded) = match maps.selection {
+        Selection::Cascades => ("weight_by_depth", "faded"),
+        Selection::OneView | Selection::CubeFace if sampling.fade > 0.0 => {
+            ("weight_by_distance", "faded")
+        }
+        Selection::OneView | Selection::CubeFace => ("not_weighted", "not_faded"),
     };
     if let Some((pattern, sample_count)) = sampling.filter.directions() {
         let (surface, normal) = match sampling.bias {
@@ -160,7 +162,8 @@ fn visibility_function(name: &str, maps: &SampledMaps<'_>) -> String {
             bias,
             filter,
             sampler,
-            limit,
+            weight,
+            faded,
         }
         .fill();
     }
@@ -172,7 +175,8 @@ fn visibility_function(name: &str, maps: &SampledMaps<'_>) -> String {
             bias,
             filter,
             sampler,
-            limit,
+            weight,
+            faded,
         }
         .fill();
     }
@@ -183,7 +187,8 @@ fn visibility_function(name: &str, maps: &SampledMaps<'_>) -> String {
         bias,
         filter,
         sampler,
-        limit,
+        weight,
+        faded,
     }
     .fill()
 }

@@ -314,7 +314,11 @@ fn the_wgsl_does_not_grow_with_the_lights() {
     assert_eq!(texts[0].1, texts[1].1);
     // The numbers of views, 12 and 192, and the last index, 1 and 31, differ by a digit wherever they
     // occur. Each of the four functions of the pool reads what all views have in common at some places.
-    assert!(texts[1].2 - texts[0].2 <= 24, "{} bytes more", texts[1].2 - texts[0].2);
+    assert!(
+        texts[1].2 - texts[0].2 <= 24,
+        "{} bytes more",
+        texts[1].2 - texts[0].2
+    );
     // Three quarters of the text are the modules and their comments.
     assert!(texts[1].2 < 40_000, "{} bytes", texts[1].2);
 }

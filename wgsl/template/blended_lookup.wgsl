@@ -11,18 +11,19 @@ fn shadow_NAME(INDEX: u32, position: vec3<f32>, normal: vec3<f32>) -> f32 {
     if !first.inside {
         return 1.0;
     }
+    let weight = shadow_WEIGHT(shadow_views_NAME[0], position);
     let along = shadow_axes_of_NAME(INDEX, position, normal);
     var lit = 0.0;
     var share = 0.0;
     for (var view = first.layer; view < VIEW_COUNT && share < 1.0; view++) {
         let place = shadow_directional_place(shadow_views_NAME[view], view, first.light);
         if place.inside {
-            let weight = (1.0 - share) * shadow_blend_weight(shadow_views_NAME[0], place);
+            let part = (1.0 - share) * shadow_blend_weight(shadow_views_NAME[0], place);
             let mapping = shadow_views_NAME[view].mapping;
             let receiver = shadow_BIAS(shadow_views_NAME[0], mapping, place, along);
-            lit += weight * shadow_FILTER(shadow_map_NAME, SAMPLER, receiver);
-            share += weight;
+            lit += part * shadow_FILTER(shadow_map_NAME, SAMPLER, receiver);
+            share += part;
         }
     }
-    return shadow_LIMIT(shadow_views_NAME[0], position, lit / share);
+    return shadow_FADED(weight, lit / share);
 }

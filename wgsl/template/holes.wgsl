@@ -63,8 +63,12 @@ fn shadow_FILTER(map: MAP_TYPE, map_sampler: SAMPLER_TYPE, receiver: ShadowRecei
     return 1.0;
 }
 
-// LIMIT is what ends the light's shadows: `limited_by_depth`, `limited_by_distance` or `not_limited`.
-fn shadow_LIMIT(view: ShadowViewUniform, position: vec3<f32>, visibility: f32) -> f32 {
+// WEIGHT is what ends the light's shadows: `weight_by_depth`, `weight_by_distance` or `not_weighted`. FADED is how:
+// `faded` or `not_faded`.
+fn shadow_WEIGHT(view: ShadowViewUniform, position: vec3<f32>) -> f32 {
+    return 1.0;
+}
+fn shadow_FADED(weight: f32, visibility: f32) -> f32 {
     return visibility;
 }
 

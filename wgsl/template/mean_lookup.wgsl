@@ -11,6 +11,7 @@ fn shadow_NAME(INDEX: u32, position: vec3<f32>, normal: vec3<f32>) -> f32 {
     if length(from_light) >= shadow_views_NAME[ANY_VIEW].range {
         return 1.0;
     }
+    let weight = shadow_WEIGHT(shadow_views_NAME[ANY_VIEW], position);
     let radius = shadow_direction_PATTERN_radius(shadow_views_NAME[ANY_VIEW], position);
     var lit = 0.0;
     for (var i = 0u; i < SAMPLE_COUNT; i++) {
@@ -26,5 +27,5 @@ fn shadow_NAME(INDEX: u32, position: vec3<f32>, normal: vec3<f32>) -> f32 {
             lit += 1.0;
         }
     }
-    return shadow_LIMIT(shadow_views_NAME[ANY_VIEW], position, lit / SAMPLE_COUNT_F32);
+    return shadow_FADED(weight, lit / SAMPLE_COUNT_F32);
 }

@@ -1,6 +1,6 @@
 //! Makes pipelines of shaders, and reads what the compiler says of their stages.
 
-use std::ffi::CStr;
+use std::ffi::{CStr, CString};
 
 use ash::{khr, vk};
 
@@ -43,8 +43,7 @@ impl Compiler {
         // and destroys them in order; all structures live until the calls that take them return.
         unsafe {
             let entry = ash::Entry::load()?;
-            let application =
-                vk::ApplicationInfo::default().api_version(vk::API_VERSION_1_3);
+            let application = vk::ApplicationInfo::default().api_version(vk::API_VERSION_1_3);
             let instance = vk::InstanceCreateInfo::default().application_info(&application);
             let instance = entry.create_instance(&instance, None)?;
             let physical = instance.enumerate_physical_devices()?;
@@ -57,8 +56,9 @@ impl Compiler {
             let queue = [vk::DeviceQueueCreateInfo::default()
                 .queue_family_index(0)
                 .queue_priorities(&[1.0])];
-            let mut executable = vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR::default()
-                .pipeline_executable_info(true);
+            let mut executable =
+                vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR::default()
+                    .pipeline_executable_info(true);
             let mut features_1_3 = vk::PhysicalDeviceVulkan13Features::default()
                 .dynamic_rendering(true)
                 .robust_image_access(true);
@@ -80,8 +80,7 @@ impl Compiler {
                 .push_next(&mut features_1_1)
                 .push_next(&mut robustness);
             let device = instance.create_device(physical, &device, None)?;
-            let executables =
-                khr::pipeline_executable_properties::Device::new(&instance, &device);
+            let executables = khr::pipeline_executable_properties::Device::new(&instance, &device);
             Ok(Self {
                 _entry: entry,
                 instance,
@@ -97,15 +96,20 @@ impl Compiler {
         &self.driver
     }
 
-    /// Compiles the entry points `vertex` and, if there is one, `fragment` of `wgsl`, and returns
-    /// the figures of the last of them. Arguments of `vertex` by location are read as
-    /// `vec4<f32>`; without `fragment` the pipeline writes depth alone.
+    /// Compiles a pipeline of `wgsl`, and returns the figures of its last stage: the entry point
+    /// `fragment`, or `vertex` in a pipeline without a fragment stage, which draws depth alone.
+    /// Arguments of `vertex` by location are read as `vec4<f32>`. A vertex stage that has a view
+    /// index draws six views at once.
     ///
     /// # Errors
     /// Returns an error for WGSL that is not valid, and where the driver fails.
-    pub fn compile(&self, wgsl: &str) -> Result<Figures, IsaError> {
+    pub fn compile(
+        &self,
+        wgsl: &str,
+        vertex: &str,
+        fragment: Option<&str>,
+    ) -> Result<Figures, IsaError> {
         let (module, words) = spirv::write(wgsl)?;
-        let has_fragment = module.entry_points.iter().any(|entry| entry.name == "fragment");
         // SAFETY: as in `new`.
         unsafe {
             let mut sets = Vec::new();
@@ -117,9 +121,9 @@ impl Compiler {
             let layout = self.device.create_pipeline_layout(&layout, None)?;
             let shader = vk::ShaderModuleCreateInfo::default().code(&words);
             let shader = self.device.create_shader_module(&shader, None)?;
-            let pipeline = self.pipeline(&module, shader, layout, has_fragment);
+            let pipeline = self.pipeline(&module, shader, layout, vertex, fragment);
             let figures = pipeline.and_then(|pipeline| {
-                let figures = self.figures(pipeline, has_fragment);
+                let figures = self.figures(pipeline, fragment.is_some());
                 self.device.destroy_pipeline(pipeline, None);
                 figures
             });
@@ -139,8 +143,17 @@ impl Compiler {
         module: &naga::Module,
         shader: vk::ShaderModule,
         layout: vk::PipelineLayout,
-        has_fragment: bool,
+        vertex: &str,
+        fragment: Option<&str>,
     ) -> Result<vk::Pipeline, IsaError> {
+        let has_fragment = fragment.is_some();
+        let entry = module
+            .entry_points
+            .iter()
+            .find(|entry| entry.name == vertex);
+        let entry = entry.ok_or_else(|| IsaError::Entry(vertex.to_owned()))?;
+        let names = [vertex, fragment.unwrap_or_default()].map(CString::new);
+        let [vertex, fragment] = names.map(Result::unwrap_or_default);
         let stage = |stage, name| {
             vk::PipelineShaderStageCreateInfo::default()
                 .stage(stage)
@@ -148,11 +161,11 @@ impl Compiler {
                 .name(name)
         };
         let stages = [
-            stage(vk::ShaderStageFlags::VERTEX, c"vertex"),
-            stage(vk::ShaderStageFlags::FRAGMENT, c"fragment"),
+            stage(vk::ShaderStageFlags::VERTEX, &*vertex),
+            stage(vk::ShaderStageFlags::FRAGMENT, &*fragment),
         ];
         let stages = &stages[..1 + usize::from(has_fragment)];
-        let attributes = attributes(module);
+        let attributes = attributes(entry);
         let buffers = [vk::VertexInputBindingDescription::default()
             .binding(0)
             .stride(256)];
@@ -186,7 +199,8 @@ impl Compiler {
         };
         let mut rendering = vk::PipelineRenderingCreateInfo::default()
             .color_attachment_formats(&color_formats[..colors])
-            .depth_attachment_format(depth_format);
+            .depth_attachment_format(depth_format)
+            .view_mask(if has_view_index(entry) { 0b11_1111 } else { 0 });
         let info = vk::GraphicsPipelineCreateInfo::default()
             .flags(vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR)
             .stages(stages)
@@ -224,7 +238,9 @@ impl Compiler {
         let info = vk::PipelineInfoKHR::default().pipeline(pipeline);
         // SAFETY: the caller's.
         let executables = unsafe { self.executables.get_pipeline_executable_properties(&info)? };
-        let index = executables.iter().position(|found| found.stages.contains(stage));
+        let index = executables
+            .iter()
+            .position(|found| found.stages.contains(stage));
         let info = vk::PipelineExecutableInfoKHR::default()
             .pipeline(pipeline)
             .executable_index(index.ok_or(IsaError::NoDevice)? as u32);
@@ -282,11 +298,10 @@ fn bindings(module: &naga::Module) -> Vec<Vec<vk::DescriptorSetLayoutBinding<'st
     groups
 }
 
-/// Returns the vertex attributes of the arguments of `vertex` that have a location.
-fn attributes(module: &naga::Module) -> Vec<vk::VertexInputAttributeDescription> {
-    let vertex = module.entry_points.iter().find(|entry| entry.name == "vertex");
-    let arguments = vertex.map_or(&[][..], |entry| &entry.function.arguments);
-    let locations = arguments.iter().filter_map(|argument| match argument.binding {
+/// Returns the vertex attributes of the arguments that have a location.
+fn attributes(vertex: &naga::EntryPoint) -> Vec<vk::VertexInputAttributeDescription> {
+    let arguments = vertex.function.arguments.iter();
+    let locations = arguments.filter_map(|argument| match argument.binding {
         Some(naga::Binding::Location { location, .. }) => Some(location),
         _ => None,
     });
@@ -299,6 +314,13 @@ fn attributes(module: &naga::Module) -> Vec<vk::VertexInputAttributeDescription>
                 .offset(16 * location)
         })
         .collect()
+}
+
+/// Returns whether a vertex stage draws several views at once.
+fn has_view_index(vertex: &naga::EntryPoint) -> bool {
+    let view_index = Some(naga::Binding::BuiltIn(naga::BuiltIn::ViewIndex));
+    let mut arguments = vertex.function.arguments.iter();
+    arguments.any(|argument| argument.binding == view_index)
 }
 
 /// Returns the text of a C string in an array.

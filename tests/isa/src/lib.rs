@@ -20,7 +20,9 @@ pub use driver::Driver;
 #[non_exhaustive]
 pub enum IsaError {
     /// The driver is not installed.
-    #[error("no radeon_icd.*.json in {folder}: install Mesa's Vulkan drivers (Debian: mesa-vulkan-drivers)")]
+    #[error(
+        "no radeon_icd.*.json in {folder}: install Mesa's Vulkan drivers (Debian: mesa-vulkan-drivers)"
+    )]
     NoDriver {
         /// Is the folder that was searched.
         folder: String,
@@ -37,6 +39,9 @@ pub enum IsaError {
     /// The WGSL is not valid.
     #[error("{0}")]
     Wgsl(String),
+    /// The WGSL has no such entry point.
+    #[error("no entry point {0:?}")]
+    Entry(String),
     /// The driver does not tell one of the figures.
     #[error("the driver does not tell {0:?}")]
     Figure(&'static str),
