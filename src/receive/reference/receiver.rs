@@ -19,15 +19,15 @@ pub struct Receiver {
     pub gradient: DVec2,
     /// Is the radius of a penumbra in texels per difference of ndc depth.
     pub penumbra: DVec2,
-    /// Is the position of the map's first texel in a grid that is fixed in the world, as the member `grid` of the WGSL
-    /// struct `ShadowViewUniform` has it.
+    /// Is the position of the map's first texel in a grid that is fixed in the world, as the member
+    /// `grid` of the WGSL struct `ShadowViewUniform` has it.
     pub grid: u32,
     /// Is the result of [`holds`] for the receiver's position. Where it is false, visibility is 1.
     pub inside: bool,
 }
 
-/// Returns the receiver at `position` (render space) with the geometric normal `normal` (unit length, on the shaded
-/// side), as the shader computes it for a light with this filter and bias.
+/// Returns the receiver at `position` (render space) with the geometric normal `normal` (unit
+/// length, on the shaded side), as the shader computes it for a light with this filter and bias.
 pub fn receiver(
     view: &ShadowViewUniform,
     filter: Filter,
@@ -126,7 +126,8 @@ fn rounding_offset(view: &ShadowViewUniform) -> f64 {
     }
 }
 
-/// Returns the world distance of the light from the tangent plane at a position; infinite for a directional light.
+/// Returns the world distance of the light from the tangent plane at a position; infinite for a
+/// directional light.
 fn light_height(view: &ShadowViewUniform, relative: DVec3, normal: DVec3) -> f64 {
     if view.light[3] > 0.0 {
         normal.dot(relative).abs()
@@ -135,7 +136,8 @@ fn light_height(view: &ShadowViewUniform, relative: DVec3, normal: DVec3) -> f64
     }
 }
 
-/// Returns the receiver's tangent plane in texel space: its components along texel x, texel y and depth.
+/// Returns the receiver's tangent plane in texel space: its components along texel x, texel y and
+/// depth.
 fn plane_across_map(view: &ShadowViewUniform, relative: DVec3, normal: DVec3) -> DVec3 {
     let plane = normal.extend(-normal.dot(relative));
     let row = |row: [f32; 4]| Vec4::from_array(row).as_dvec4().dot(plane);
@@ -146,9 +148,9 @@ fn plane_across_map(view: &ShadowViewUniform, relative: DVec3, normal: DVec3) ->
     )
 }
 
-/// Returns whether the map of `view` covers `position` (render space), as `shadow_view_holds` in `wgsl/view.wgsl` does:
-/// within its sides, not beyond its far plane, and for a local light in front of it and within its cone and range. A
-/// position that no view covers is lit.
+/// Returns whether the map of `view` covers `position` (render space), as `shadow_view_holds` in
+/// `wgsl/view.wgsl` does: within its sides, not beyond its far plane, and for a local light in
+/// front of it and within its cone and range. A position that no view covers is lit.
 pub fn holds(view: &ShadowViewUniform, position: DVec3) -> bool {
     let relative = position - Vec3::from_array(view.anchor).as_dvec3();
     let homogeneous = matrix(view) * relative.extend(1.0);
@@ -162,11 +164,12 @@ pub fn holds(view: &ShadowViewUniform, position: DVec3) -> bool {
     within && reached && homogeneous.w > 0.0 && homogeneous.z >= 0.0
 }
 
-/// Is the least weight of a cascade. It is above 0, so that every position within a cascade has a weighted mean.
+/// Is the least weight of a cascade. It is above 0, so that every position within a cascade has a
+/// weighted mean.
 const LEAST_WEIGHT: f64 = 1.0 / 4096.0;
 
-/// Returns the weight, from 1/4096 to 1, of a cascade at a `position` (render space) that it covers, where cascades
-/// blend. It is the `shadow_view_weight` of `wgsl/view.wgsl`.
+/// Returns the weight, from 1/4096 to 1, of a cascade at a `position` (render space) that it
+/// covers, where cascades blend. It is the `shadow_view_weight` of `wgsl/view.wgsl`.
 pub fn weight(view: &ShadowViewUniform, position: DVec3) -> f64 {
     let relative = position - Vec3::from_array(view.anchor).as_dvec3();
     let homogeneous = matrix(view) * relative.extend(1.0);
