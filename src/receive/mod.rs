@@ -5,7 +5,7 @@
 //! bias.rs          how a receiver is kept from shadowing itself
 //! check_sampling.rs  the checks of filter and bias
 //! uniforms.rs      the layout that Rust and WGSL share
-//! reference.rs     the CPU reference: the arithmetic of the WGSL in f64; its receiver.rs and filter.rs
+//! reference.rs     the CPU reference: the WGSL's arithmetic in f64, in reference/
 //! texel_access.rs  gathers, or samples where a device has no gather
 //! maps.rs          ShadowMaps: what every light owns; sampled_maps.rs: what a lookup needs of it
 //! layer_limits.rs  what the maps of a light need of a device's limits

@@ -1,10 +1,11 @@
-//! Tests that the cameras of the tests are what they say, since the truth about images is found through their rays.
+//! Tests that the cameras of the tests are what they say, since the truth about images is found
+//! through their rays.
 
 use glam::DVec3;
 use shadow_support::camera::{Camera, Lens, Pose};
 
-/// Matrices and rays agree: a point along a ray is projected back to where the ray started, inside the depth range, and
-/// its depth changes in the right direction.
+/// Matrices and rays agree: a point along a ray is projected back to where the ray started, inside
+/// the depth range, and its depth changes in the right direction.
 #[test]
 fn rays_project_to_their_pixels() {
     let pose = Pose::looking_at(DVec3::new(3.0, 5.0, -7.0), DVec3::new(-1.0, 0.5, 2.0));

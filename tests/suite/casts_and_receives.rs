@@ -12,8 +12,8 @@ use crate::fixtures::gpu::gpu;
 use crate::fixtures::scene::default_pipeline;
 use crate::fixtures::watched::Watched;
 
-/// A dome that does not receive costs no texels; a sheet that does not cast is not drawn and still counts as a
-/// receiver.
+/// A dome that does not receive costs no texels; a sheet that does not cast is not drawn and still
+/// counts as a receiver.
 #[test]
 fn who_casts_and_who_receives() {
     let gpu = gpu();

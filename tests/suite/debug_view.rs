@@ -111,8 +111,8 @@ fn spot_over_floor(gpu: &Gpu, light: SpotLight, receivers: Aabb) -> SpotShadow {
     shadow
 }
 
-/// A spot light shines on a plane: each pixel shows how far along the ray through its texel the plane lies, as a
-/// fraction of the range.
+/// A spot light shines on a plane: each pixel shows how far along the ray through its texel the
+/// plane lies, as a fraction of the range.
 #[test]
 fn a_spot_shows_distances() {
     let gpu = gpu();

@@ -1,7 +1,7 @@
 //! Tests every filter under every bias on the device against the CPU reference, `wgpu_shadows::reference`.
 //!
 //! A comparison is undecided where reference depth and texel are closer than f32 resolves. So the CPU reference is
-//! evaluated not once but nine times, at the receiver and at the corners of its rounding band (`support/rounding.rs`),
+//! evaluated not once but nine times, at the receiver and at the corners of its rounding band (`fixtures/rounding.rs`),
 //! and the device's result must lie between the least and the greatest of these, up to the rounding of the weighted
 //! sum. Receivers for which they differ are *undecided*: the test proves little about them, and limits their share.
 

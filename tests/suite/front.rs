@@ -1,9 +1,9 @@
 //! Tests that the configurations that the library ships are worth their cost: nothing that it can do is both cheaper
 //! and closer to the truth.
 //!
-//! `cargo bench --bench speed_vs_error` measures this in full; here it is measured on small images and with counts
-//! alone. The cost is [`shadow_support::technique::Cost::frame_work`], and the error is the root of the mean squared error
-//! against rays cast in double precision.
+//! `cargo bench --bench speed_vs_error` measures this in full; here it is measured on small images
+//! and with counts alone. The cost is [`shadow_support::technique::Cost::frame_work`], and the
+//! error is the root of the mean squared error against rays cast in double precision.
 
 use shadow_support::gpu::{Gpu, GpuRequest};
 use shadow_support::measure::configuration::{self, Configuration, Extent};

@@ -6,7 +6,8 @@ use wgpu_shadows::shader;
 use crate::fixtures::gpu::gpu;
 use crate::fixtures::triangles::{SIZE, VERTEX, draw};
 
-/// Returns stages that show the geometric normal on the side of `eye.place`, from -1 to 1 as 0 to 255.
+/// Returns stages that show the geometric normal on the side of `eye.place`, from -1 to 1 as 0 to
+/// 255.
 fn source() -> String {
     let modules = shader::compose(&["normal"]).expect("a module of the table");
     let fragment = "

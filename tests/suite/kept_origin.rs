@@ -45,8 +45,8 @@ impl Wall {
         self.world_from_wall.z_axis
     }
 
-    /// Returns the wall as an engine draws it whose render space begins at `origin`. Its version does not change while
-    /// the origin moves, as `Revision` allows.
+    /// Returns the wall as an engine draws it whose render space begins at `origin`. Its version
+    /// does not change while the origin moves, as `Revision` allows.
     fn caster(&self, gpu: &Gpu, pipeline: &CasterPipeline, origin: DVec3) -> Watched {
         let mut mesh = Mesh::cuboid(Vec3::new(-5.0, -5.0, -0.3), Vec3::new(5.0, 5.0, 0.0));
         for position in &mut mesh.positions {

@@ -1,4 +1,5 @@
-//! Tests which meshes go with which pipelines: `MeshCaster` refuses the others, and what it accepts can be drawn.
+//! Tests which meshes go with which pipelines: `MeshCaster` refuses the others, and what it accepts
+//! can be drawn.
 
 use glam::{DVec3, Mat4, Vec3};
 use shadow_support::mesh::Mesh;
@@ -73,8 +74,8 @@ fn meshes_that_do_not_go_with_their_pipelines() {
     }
 }
 
-/// What wgpu would refuse or panic over while it records is refused by `MeshCaster::new`, or draws nothing. An encoder
-/// is finished and submitted with every mesh that is accepted.
+/// What wgpu would refuse or panic over while it records is refused by `MeshCaster::new`, or draws
+/// nothing. An encoder is finished and submitted with every mesh that is accepted.
 #[test]
 fn meshes_that_cannot_be_drawn() {
     use wgpu::BufferUsages as U;
@@ -185,8 +186,8 @@ fn engine_pipeline(
     .expect("a valid pipeline")
 }
 
-/// A mesh sets vertex buffer 0, and buffer 1 for the built-in matrix: a pipeline that reads more would make the encoder
-/// invalid.
+/// A mesh sets vertex buffer 0, and buffer 1 for the built-in matrix: a pipeline that reads more
+/// would make the encoder invalid.
 #[test]
 fn pipelines_that_take_more_than_a_mesh_sets() {
     let gpu = gpu();
@@ -269,8 +270,8 @@ fn pipelines_that_take_more_than_a_mesh_sets() {
             (created, needs) => panic!("{created:?} where {needs:?} is needed"),
         }
     }
-    // Vertices of the engine's own layout must be in the buffer as well, and so must the one of a buffer that is read
-    // per instance.
+    // Vertices of the engine's own layout must be in the buffer as well, and so must the one of a
+    // buffer that is read per instance.
     let (drawn, _) = &cases[0];
     let error = create(drawn, &vertices, MeshIndices::None { vertices: 0..9 });
     let wanted = CasterError::BufferTooSmall {

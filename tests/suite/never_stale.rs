@@ -126,7 +126,8 @@ impl Ways {
     }
 }
 
-/// Records a frame of both lights, so that they have the same history, into an encoder that is dropped.
+/// Records a frame of both lights, so that they have the same history, into an encoder that is
+/// dropped.
 fn throw_away<F, L: RecordFrame<F>>(gpu: &Gpu, lights: [&mut L; 2], frame: &F) {
     let mut thrown_away = gpu.encoder();
     for light in lights {

@@ -169,7 +169,7 @@ fn the_border_is_where_the_kernel_ends() {
             assert!(seen[first_lit..].iter().all(|v| *v == 1.0), "{}", hall.name);
             let reach = filter.reach_texels();
             let last = looked_up(places[first_lit - 1]);
-            // 1e-4 texels are more than the error of f32 in a map of this size (`support/rounding.rs`).
+            // 1e-4 texels are more than the error of f32 in a map of this size (`fixtures/rounding.rs`).
             assert!(last >= reach - 1e-4, "{}: {last} < {reach}", hall.name);
             // |nx| + |ny| of the normal is at most the square root of two.
             let sideways =

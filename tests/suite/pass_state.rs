@@ -1,5 +1,5 @@
-//! Tests casters that leave the pass in another state than they found it: those after them are drawn
-//! as if they had not.
+//! Tests casters that leave the pass in another state than they found it: those after them are
+//! drawn as if they had not.
 
 use wgpu_shadows::{
     Aabb, CasterPipeline, DepthFormat, MeshCaster, ShadowCaster, ShadowView,

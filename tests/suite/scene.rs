@@ -1,4 +1,5 @@
-//! Tests one frame for all lights: several cameras that share the maps, and what the coverage means.
+//! Tests one frame for all lights: several cameras that share the maps, and what the coverage
+//! means.
 
 use glam::{DMat4, DVec3, Mat4, Vec3};
 use shadow_support::camera::Camera;

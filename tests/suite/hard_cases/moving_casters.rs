@@ -91,7 +91,8 @@ impl Changes {
         )
     }
 
-    /// Asserts that the still shadow changed in at most one frame of a hundred, and returns the words.
+    /// Asserts that the still shadow changed in at most one frame of a hundred, and returns the
+    /// words.
     fn few(&self, name: &str) -> String {
         let words = self.words(name);
         assert!(self.frames * 100 <= FRAMES, "{words}");

@@ -168,8 +168,8 @@ pub struct PixelRay {
     pub reach: f64,
 }
 
-/// Returns a camera at `eye` that looks at `target`, right-handed, with reversed depth and without a far plane, for
-/// images of 16 by 9.
+/// Returns a camera at `eye` that looks at `target`, right-handed, with reversed depth and without
+/// a far plane, for images of 16 by 9.
 pub fn looking(eye: Vec3, target: Vec3, fov_y_radians: f32) -> CameraView {
     perspective(eye, target, fov_y_radians, ASPECT)
 }
@@ -188,7 +188,8 @@ pub fn eye(camera: &CameraView) -> Vec3 {
     render_from_view.w_axis.truncate().as_vec3()
 }
 
-/// Returns rays through the centres of the pixels, row by row from the top, of any projection with reversed depth.
+/// Returns rays through the centres of the pixels, row by row from the top, of any projection with
+/// reversed depth.
 pub fn pixel_rays(
     camera: &CameraView,
     [width, height]: [u32; 2],

@@ -28,8 +28,8 @@ impl<'a> Clock<'a> {
         Self { gpu, queries }
     }
 
-    /// Returns the seconds that the commands of `record` take. On a software rasterizer only the ratio to another such
-    /// time is meaningful.
+    /// Returns the seconds that the commands of `record` take. On a software rasterizer only the
+    /// ratio to another such time is meaningful.
     pub fn seconds(&self, record: impl FnOnce(&mut wgpu::CommandEncoder)) -> f64 {
         let seconds = self.try_seconds(|encoder| {
             record(encoder);

@@ -11,7 +11,8 @@ pub struct Gpu {
     pub adapter: wgpu::AdapterInfo,
     /// States that timestamps can be written between passes.
     pub has_timestamps: bool,
-    /// Allows one submission at a time: the OpenGL backend gives up when it waits long for its only context.
+    /// Allows one submission at a time: the OpenGL backend gives up when it waits long for its only
+    /// context.
     submitting: Mutex<()>,
 }
 
@@ -19,8 +20,8 @@ pub struct Gpu {
 pub struct GpuRequest {
     /// Lists sets of backends; the first that has an adapter is used.
     pub backends: Vec<wgpu::Backends>,
-    /// States that a software adapter is preferred, which gives every machine the same pixels; otherwise wgpu's
-    /// preference decides.
+    /// States that a software adapter is preferred, which gives every machine the same pixels;
+    /// otherwise wgpu's preference decides.
     pub prefers_software: bool,
     /// Are the features without which there is no device.
     pub features: wgpu::Features,
@@ -34,8 +35,8 @@ const TIMESTAMPS: wgpu::Features =
     wgpu::Features::TIMESTAMP_QUERY.union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS);
 
 impl Default for GpuRequest {
-    /// Asks for wgpu's preferred adapter among the backends that the variable `WGPU_BACKEND` names, and for a device
-    /// with the features and limits that every engine can have.
+    /// Asks for wgpu's preferred adapter among the backends that the variable `WGPU_BACKEND` names,
+    /// and for a device with the features and limits that every engine can have.
     fn default() -> Self {
         Self {
             backends: vec![wgpu::Backends::from_env().unwrap_or_default()],
@@ -48,9 +49,9 @@ impl Default for GpuRequest {
 }
 
 impl GpuRequest {
-    /// Asks for all that measurements can use: timestamps, several views per pass, and the adapter's own limits; of
-    /// Vulkan, or of another backend where there is no Vulkan. Merely looking for an OpenGL display makes some drivers
-    /// write to stderr, so that one comes last.
+    /// Asks for all that measurements can use: timestamps, several views per pass, and the
+    /// adapter's own limits; of Vulkan, or of another backend where there is no Vulkan. Merely
+    /// looking for an OpenGL display makes some drivers write to stderr, so that one comes last.
     pub fn measuring() -> Self {
         Self {
             backends: vec![
@@ -81,8 +82,9 @@ impl GpuRequest {
         found.ok_or_else(|| {
             let backends = self.backends.iter().copied().collect::<wgpu::Backends>();
             format!(
-                "no graphics adapter for {backends:?}; on Debian and Ubuntu a software one comes with `apt-get install \
-                 mesa-vulkan-drivers` (Vulkan) or `libegl1 libgl1-mesa-dri` (OpenGL)"
+                "no graphics adapter for {backends:?}; on Debian and Ubuntu a software one comes \
+                 with `apt-get install mesa-vulkan-drivers` (Vulkan) or `libegl1 \
+                 libgl1-mesa-dri` (OpenGL)"
             )
         })
     }
@@ -196,8 +198,8 @@ impl Gpu {
         [width, height]: [u32; 2],
         sample_count: u32,
     ) -> wgpu::Texture {
-        // Multisampled textures cannot be read back, and on OpenGL a texture that can be copied from would not be
-        // resolved.
+        // Multisampled textures cannot be read back, and on OpenGL a texture that can be copied
+        // from would not be resolved.
         let readable = if sample_count == 1 {
             wgpu::TextureUsages::COPY_SRC
         } else {

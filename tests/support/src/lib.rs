@@ -1,7 +1,8 @@
 //! Contains what the tests, benches and examples of `wgpu-shadows` share. It is never published.
 //!
 //! ```text
-//! gpu.rs        a device without a window; readback.rs: what it computed; clock.rs: how long that took
+//! gpu.rs        a device without a window
+//! readback.rs   what it computed; clock.rs: how long that took
 //! bind.rs       bind groups whose bindings are numbered in order
 //! random.rs     the same numbers on every machine
 //! mesh.rs       generated meshes, as casters and as triangles; triangle.rs: triangles in f64

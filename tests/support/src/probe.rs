@@ -32,8 +32,8 @@ impl Point {
     }
 }
 
-/// Holds a compute pipeline that returns one value per point: group 0 is its own, and group 1 is what its WGSL declares
-/// there.
+/// Holds a compute pipeline that returns one value per point: group 0 is its own, and group 1 is
+/// what its WGSL declares there.
 #[derive(Clone)]
 pub struct PointShader {
     pipeline: wgpu::ComputePipeline,
@@ -41,8 +41,8 @@ pub struct PointShader {
 }
 
 impl PointShader {
-    /// Creates the pipeline. `value` is a WGSL expression over `point.position` and `point.normal`, of type
-    /// `value_type`.
+    /// Creates the pipeline. `value` is a WGSL expression over `point.position` and `point.normal`,
+    /// of type `value_type`.
     pub fn new(
         gpu: &Gpu,
         declarations: &str,

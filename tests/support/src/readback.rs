@@ -105,7 +105,8 @@ pub fn rgba8(gpu: &Gpu, texture: &wgpu::Texture) -> image::RgbaImage {
         .expect("rows of four bytes a pixel")
 }
 
-/// Submits `encoder`, and returns the texels of a colour texture created with `COPY_SRC`, row by row from the top.
+/// Submits `encoder`, and returns the texels of a colour texture created with `COPY_SRC`, row by
+/// row from the top.
 pub fn texels(
     gpu: &Gpu,
     mut encoder: wgpu::CommandEncoder,

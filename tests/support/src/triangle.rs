@@ -7,7 +7,8 @@ use glam::DVec3;
 pub struct Triangle(pub [DVec3; 3]);
 
 impl Triangle {
-    /// Returns the unit normal on the side from which the corners are counter-clockwise; `None` without an area.
+    /// Returns the unit normal on the side from which the corners are counter-clockwise; `None`
+    /// without an area.
     pub fn try_normal(&self) -> Option<DVec3> {
         let [a, b, c] = self.0;
         (b - a).cross(c - a).try_normalize()
@@ -26,7 +27,8 @@ impl Triangle {
         a * (1.0 - root) + b * (root * (1.0 - t)) + c * (root * t)
     }
 
-    /// Returns the distance along a ray at which it hits the triangle, from either side (Möller and Trumbore 1997).
+    /// Returns the distance along a ray at which it hits the triangle, from either side (Möller and
+    /// Trumbore 1997).
     pub fn hit(&self, from: DVec3, direction: DVec3) -> Option<f64> {
         let [a, b, c] = self.0;
         let (edge_b, edge_c) = (b - a, c - a);
@@ -43,7 +45,8 @@ impl Triangle {
     }
 }
 
-/// Returns the truth: whether anything lies between `point` and the light, farther than `skip` along the ray.
+/// Returns the truth: whether anything lies between `point` and the light, farther than `skip`
+/// along the ray.
 pub fn occluded(triangles: &[Triangle], point: DVec3, toward_light: DVec3, skip: f64) -> bool {
     triangles
         .iter()

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! configuration.rs  the settings
-//! pixels.rs         what a camera sees, with the truth; edge.rs: how far it is from a shadow's edge
+//! pixels.rs         what a camera sees, with the truth; edge.rs: the distance to a shadow's edge
 //! subject.rs        runs the techniques in one scene; prober.rs: samples and times
 //! error.rs          compares with the truth; floor.rs: the least error of a filter
 //! overall.rs        means over scenes, and the judgement; pareto.rs

@@ -19,8 +19,8 @@ pub struct Questions {
     in_world_space: wgpu::BindGroup,
 }
 
-/// Holds seconds on the device's own clock, or on the wall's where the device has none. Only ratios of these are
-/// meaningful.
+/// Holds seconds on the device's own clock, or on the wall's where the device has none. Only ratios
+/// of these are meaningful.
 #[derive(Clone, Copy, Debug)]
 pub struct Times {
     pub maps: f64,
@@ -73,7 +73,8 @@ impl<'a> Prober<'a> {
         self.gpu
     }
 
-    /// Uploads points (position and normal in a render space that begins at `origin`) to the device.
+    /// Uploads points (position and normal in a render space that begins at `origin`) to the
+    /// device.
     pub fn questions(&self, places: &[(DVec3, DVec3)], origin: DVec3) -> Questions {
         let answers = readback::storage(self.gpu, 4 * places.len() as u64);
         let group = |in_world: bool| {
