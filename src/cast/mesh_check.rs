@@ -111,8 +111,9 @@ fn check_indices(
     require(field, u64::from(indices.end) * index_bytes, buffer.size())
 }
 
-/// Accepts buffers of `device`. A buffer does not tell which device it belongs to; wgpu reports a mismatch when an
-/// encoder that uses the buffer is finished, so this finishes an encoder that is then thrown away.
+/// Accepts buffers of `device`. A buffer does not tell which device it belongs to; wgpu reports a
+/// mismatch when an encoder that uses the buffer is finished, so this finishes an encoder that is
+/// then thrown away.
 fn check_owner(
     device: &wgpu::Device,
     descriptor: &MeshCasterDescriptor<'_>,

@@ -10,29 +10,31 @@ use crate::fit::spacing::Spacing;
 use crate::fit::stability::Stability;
 use crate::fit::visible::{self, Seen};
 
-/// Is the largest distance in texels, from the highest receiver, to which casters whose bounds reach from there to
-/// below all receivers move the near plane. The limit prevents one object with bounds of a million kilometres from
-/// taking the precision of the depths from all others: depths are f32, and their rounding comes to three texels at this
-/// range. The distance is 84 km for texels of one centimetre. The parts of such casters that are nearer to the light
-/// cast nothing.
+/// Is the largest distance in texels, from the highest receiver, to which casters whose bounds
+/// reach from there to below all receivers move the near plane. The limit prevents one object with
+/// bounds of a million kilometres from taking the precision of the depths from all others: depths
+/// are f32, and their rounding comes to three texels at this range. The distance is 84 km for
+/// texels of one centimetre. The parts of such casters that are nearer to the light cast nothing.
 const MAX_TEXELS_TO_NEAR: f64 = (1 << 23) as f64;
 
-/// Limits, as a fraction of a map's side, the height above its receivers that a part needs for the map to cover it. In
-/// coarse maps, shadows are visible that are smaller than the gap that the bias admits.
+/// Limits, as a fraction of a map's side, the height above its receivers that a part needs for the
+/// map to cover it. In coarse maps, shadows are visible that are smaller than the gap that the bias
+/// admits.
 const MAX_GAP_SHARE: f64 = 1.0 / 64.0;
 
 /// Holds the casters of a frame, as the fit of a cascade needs them.
 pub(crate) struct CascadeCasters<'a> {
     /// Has one entry per caster.
     pub whole: &'a [CasterBounds],
-    /// Holds the parts of divided casters, the highest first. Only these parts of a divided caster count.
+    /// Holds the parts of divided casters, the highest first. Only these parts of a divided caster
+    /// count.
     pub parts: &'a [CasterPart],
 }
 
-/// Returns the light-space bounds for receivers in `required`: the area, seen from the light, that both receivers and
-/// casters cover. Where rounding makes it doubtful whether a caster reaches the receivers, it counts as reaching them.
-/// Returns `None` where no caster does. `seen` holds what cameras see, and the depths along the view between which the
-/// cascade lies.
+/// Returns the light-space bounds for receivers in `required`: the area, seen from the light, that
+/// both receivers and casters cover. Where rounding makes it doubtful whether a caster reaches the
+/// receivers, it counts as reaching them. Returns `None` where no caster does. `seen` holds what
+/// cameras see, and the depths along the view between which the cascade lies.
 pub(crate) fn fit_bounds(
     input: &FitInput<'_>,
     limits: &FitLimits,
@@ -101,9 +103,9 @@ pub(crate) fn fit_bounds(
         rect,
         depth: depth(covered.max.z).depth,
     };
-    // Only the part of a caster inside the extruded map rectangle counts for the near plane: the far end of a wide
-    // ground does not. The quantized light-space bounds are larger than was requested, so this also includes casters
-    // that touch only their border.
+    // Only the part of a caster inside the extruded map rectangle counts for the near plane: the
+    // far end of a wide ground does not. The quantized light-space bounds are larger than was
+    // requested, so this also includes casters that touch only their border.
     let mut over_rect = HalfSpaces::default();
     push_extruded_rect(
         &mut over_rect,
@@ -141,11 +143,12 @@ pub(crate) fn fit_bounds(
     })
 }
 
-/// Returns the light-space box of all that can shadow receivers in `required`, or `None` where nothing can.
+/// Returns the light-space box of all that can shadow receivers in `required`, or `None` where
+/// nothing can.
 ///
-/// A part that rises above its receivers by less than the gap that the bias may leave has no visible shadow, so the map
-/// does not cover a ground for the sake of a carpet on it. `gap_share` is that gap as a fraction of the side of what
-/// the map covers.
+/// A part that rises above its receivers by less than the gap that the bias may leave has no
+/// visible shadow, so the map does not cover a ground for the sake of a carpet on it. `gap_share`
+/// is that gap as a fraction of the side of what the map covers.
 fn shadow_box(
     casters: &CascadeCasters<'_>,
     required: &LightBox,
@@ -176,8 +179,8 @@ fn shadow_box(
     (!shadows.is_empty()).then_some(shadows)
 }
 
-/// Returns the light-space depths of the farthest and the nearest receiver, seen from the light, within the sides of
-/// `covered`; `None` where there is none.
+/// Returns the light-space depths of the farthest and the nearest receiver, seen from the light,
+/// within the sides of `covered`; `None` where there is none.
 fn depths_over(
     input: &FitInput<'_>,
     (seen, between): (&[Seen], Option<(f64, f64)>),

@@ -1,4 +1,5 @@
-//! Fits the cascades of a directional light to the visible receivers and to every caster that can reach them.
+//! Fits the cascades of a directional light to the visible receivers and to every caster that can
+//! reach them.
 
 use glam::DVec3;
 
@@ -15,11 +16,12 @@ use crate::fit::split::MAX_CASCADES;
 use crate::fit::visible::{SeenBounds, SeenLists};
 use crate::{Aabb, ShadowError};
 
-/// Is the cosine of the largest angle, about a degree, by which a light may turn from one frame to the next and keep
-/// the history of its extents.
+/// Is the cosine of the largest angle, about a degree, by which a light may turn from one frame to
+/// the next and keep the history of its extents.
 const TURN_COSINE: f64 = 0.999_85;
 
-/// Holds the light-space bounds of a light's cascades, kept from frame to frame for their hysteresis.
+/// Holds the light-space bounds of a light's cascades, kept from frame to frame for their
+/// hysteresis.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct DirectionalFit {
     /// Has one entry per cascade, `None` for a cascade in which nothing can cast a shadow.
@@ -44,8 +46,8 @@ pub(crate) struct FitScratch {
 }
 
 impl DirectionalFit {
-    /// Returns whether the extents of the last frame apply to a light with `axes`. A light that turns by a large angle
-    /// moves all shadows, so that none of them needs to keep its texels.
+    /// Returns whether the extents of the last frame apply to a light with `axes`. A light that
+    /// turns by a large angle moves all shadows, so that none of them needs to keep its texels.
     fn holds_for(&self, axes: &LightAxes) -> bool {
         self.axes.is_some_and(|held| {
             held.toward_light().dot(axes.toward_light()) > TURN_COSINE
@@ -55,8 +57,8 @@ impl DirectionalFit {
 
     /// Returns the fit for this frame and fills `scratch.casters`.
     ///
-    /// Returns an error where casters and receivers are so far from the world's origin that f64 does not distinguish
-    /// their positions.
+    /// Returns an error where casters and receivers are so far from the world's origin that f64
+    /// does not distinguish their positions.
     pub fn fit(
         &self,
         input: &FitInput<'_>,
@@ -120,9 +122,9 @@ impl DirectionalFit {
         Ok(next)
     }
 
-    /// Returns the light-space bounds of a cascade that something casts into, and adds its casters to `drawn`: those of
-    /// which some part is within the map rectangle, seen along the light, and in front of the far plane. `scratch` is
-    /// the one that the fit has filled.
+    /// Returns the light-space bounds of a cascade that something casts into, and adds its casters
+    /// to `drawn`: those of which some part is within the map rectangle, seen along the light, and
+    /// in front of the far plane. `scratch` is the one that the fit has filled.
     pub fn cull(
         &self,
         cascade: usize,
@@ -164,8 +166,8 @@ fn find_visible(input: &FitInput<'_>, lists: &mut SeenLists) -> SeenBounds {
     }
 }
 
-/// Replaces casters that are much larger than all others by the parts of them that count. In a given box everything
-/// receives, so that all of a caster counts.
+/// Replaces casters that are much larger than all others by the parts of them that count. In a
+/// given box everything receives, so that all of a caster counts.
 fn divide_casters(input: &FitInput<'_>, visible: &SeenBounds, scratch: &mut FitScratch) {
     if matches!(input.region, Region::Bounds(_)) {
         return scratch.parts.clear();
@@ -188,10 +190,11 @@ fn divide_casters(input: &FitInput<'_>, visible: &SeenBounds, scratch: &mut FitS
     }
 }
 
-/// Returns whether a shadow of `caster` can fall on anything visible. A point is shadowed by a point of the caster
-/// further along the way to the light, so on each world axis the caster must reach beyond the receivers' near end in
-/// the light's direction. A flat floor under everything else fails this (it reaches just as far as the lowest receiver:
-/// itself), and neither widens the light-space bounds nor is drawn.
+/// Returns whether a shadow of `caster` can fall on anything visible. A point is shadowed by a
+/// point of the caster further along the way to the light, so on each world axis the caster must
+/// reach beyond the receivers' near end in the light's direction. A flat floor under everything
+/// else fails this (it reaches just as far as the lowest receiver: itself), and neither widens the
+/// light-space bounds nor is drawn.
 fn can_shadow(caster: &Aabb, receivers: &SeenBounds, toward_light: DVec3) -> bool {
     let (low, high) = (caster.min.as_dvec3(), caster.max.as_dvec3());
     (0..3).all(|axis| {

@@ -1,5 +1,5 @@
-//! Defines the map rectangle of a directional light extruded without end toward the light: the volume that casters must
-//! reach into to cast into the map.
+//! Defines the map rectangle of a directional light extruded without end toward the light: the
+//! volume that casters must reach into to cast into the map.
 
 use glam::{DVec2, DVec3};
 
@@ -10,10 +10,10 @@ use crate::fit::region::{HalfSpace, HalfSpaces};
 
 /// Is the volume over a map rectangle, prepared so that many boxes can be tested against it.
 ///
-/// Seen along the light a box is a hexagon, whose sides run along the projected world axes. Two convex figures in the
-/// plane are apart exactly if a normal of one's sides separates them (Gottschalk et al. 1996): two normals of the
-/// rectangle, and three of the hexagon. The caller has tested the rectangle's own already, with the box's interval in
-/// light space.
+/// Seen along the light a box is a hexagon, whose sides run along the projected world axes. Two
+/// convex figures in the plane are apart exactly if a normal of one's sides separates them
+/// (Gottschalk et al. 1996): two normals of the rectangle, and three of the hexagon. The caller has
+/// tested the rectangle's own already, with the box's interval in light space.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ExtrudedRect {
     center_render: DVec3,
@@ -22,7 +22,8 @@ pub(crate) struct ExtrudedRect {
     sides: [Side; 3],
 }
 
-/// Is a normal of the hexagon's sides, as a direction of render space, with the half-extent of the rectangle along it.
+/// Is a normal of the hexagon's sides, as a direction of render space, with the half-extent of the
+/// rectangle along it.
 #[derive(Clone, Copy, Debug)]
 struct Side {
     normal: DVec3,
@@ -54,7 +55,8 @@ impl ExtrudedRect {
         }
     }
 
-    /// Returns whether the box, seen along the light, overlaps the rectangle on all of the hexagon's normals.
+    /// Returns whether the box, seen along the light, overlaps the rectangle on all of the
+    /// hexagon's normals.
     pub fn meets(&self, bounds: &Aabb) -> bool {
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
         let between = (min + max) * 0.5 - self.center_render;
@@ -69,7 +71,8 @@ impl ExtrudedRect {
     }
 }
 
-/// Adds the four sides of an extruded rectangle, from `min` to `max` across the light, to a region of render space.
+/// Adds the four sides of an extruded rectangle, from `min` to `max` across the light, to a region
+/// of render space.
 pub(crate) fn push_extruded_rect(
     region: &mut HalfSpaces,
     axes: &LightAxes,
@@ -100,8 +103,9 @@ mod tests {
         f64::from(*state) / f64::from(u32::MAX) * 2.0 - 1.0
     }
 
-    /// Checks that interval and volume together agree with clipping the box by the four sides, except for boxes that
-    /// touch within 1e-9, and that the volume culls some boxes that the interval lets pass.
+    /// Checks that interval and volume together agree with clipping the box by the four sides,
+    /// except for boxes that touch within 1e-9, and that the volume culls some boxes that the
+    /// interval lets pass.
     #[test]
     fn an_extruded_rect_meets_what_reaches_into_it() {
         let mut state = 1;

@@ -1,4 +1,5 @@
-//! Determines what each light's views must cover, as pure f64 mathematics that returns values and does not use wgpu.
+//! Determines what each light's views must cover, as pure f64 mathematics that returns values and
+//! does not use wgpu.
 //!
 //! ```text
 //! camera.rs       the engine's camera as half-spaces and depth along the view
@@ -21,7 +22,8 @@
 //! reached.rs      what a local light reaches
 //! nearest.rs      how near to a local light its near planes may be
 //! local.rs        the complete fit of a spot or point light's views; local_input.rs: its input
-//! view.rs         ShadowView: the value that maps are rendered and sampled with; view_rounding.rs: its rounding errors
+//! view.rs         ShadowView: the value that maps are rendered and sampled with
+//! view_rounding.rs  the rounding errors of a view
 //! ```
 
 mod axes;

@@ -1,34 +1,39 @@
 //! Limits how near to a local light a near plane may be, for each caster.
 //!
-//! Depth is near / w, with w the distance along the view's axis. Its error relative to itself is that of f32 wherever the
-//! near plane is. What does depend on the near plane is the rasteriser's interpolation in f32: across a triangle that starts
-//! at the near plane it errs by w² / near · 2⁻²³ at distance w, and receivers are moved toward the light by as much. So a near
-//! plane that is too near costs contact far from the light: w / near · 2⁻²⁴ · N texels in a map of N texels a side. A near
-//! plane that is too far costs the whole shadow of the casters before it.
+//! Depth is near / w, with w the distance along the view's axis. Its error relative to itself is
+//! that of f32 wherever the near plane is. What does depend on the near plane is the rasteriser's
+//! interpolation in f32: across a triangle that starts at the near plane it errs by w² / near ·
+//! 2⁻²³ at distance w, and receivers are moved toward the light by as much. So a near plane that is
+//! too near costs contact far from the light: w / near · 2⁻²⁴ · N texels in a map of N texels a
+//! side. A near plane that is too far costs the whole shadow of the casters before it.
 //!
-//! So the near plane is at the box of the nearest caster, as long as the box tells where the caster's surface is. A box that
-//! contains the light does not tell it. A surface that passes the light within rounding, like the ceiling that a lamp hangs
-//! on, has no distance that is worth resolving.
+//! So the near plane is at the box of the nearest caster, as long as the box tells where the
+//! caster's surface is. A box that contains the light does not tell it. A surface that passes the
+//! light within rounding, like the ceiling that a lamp hangs on, has no distance that is worth
+//! resolving.
 
 use glam::DVec3;
 
 use crate::Aabb;
 
-/// Is the share of the light's reach, and of half the largest side of a caster's box, below which no surface needs to be
-/// resolved. With a near plane at this share of the reach, the interpolation errs by 2⁻¹³ of the distance at the end of the
-/// reach, which is a sixteenth of a texel in a map of 1024.
+/// Is the share of the light's reach, and of half the largest side of a caster's box, below which
+/// no surface needs to be resolved. With a near plane at this share of the reach, the interpolation
+/// errs by 2⁻¹³ of the distance at the end of the reach, which is a sixteenth of a texel in a map
+/// of 1024.
 const RESOLVED_SHARE: f64 = 1.0 / 1024.0;
 
-/// Is the distance at which the surface of a mesh is expected to begin whose box contains the light, as a share of half the
-/// smallest side of the box. It serves the shade of a lamp, and leaves room for lights that are not in its middle.
+/// Is the distance at which the surface of a mesh is expected to begin whose box contains the
+/// light, as a share of half the smallest side of the box. It serves the shade of a lamp, and
+/// leaves room for lights that are not in its middle.
 const ENCLOSING_SHARE: f64 = 1.0 / 16.0;
 
-/// Is the least distance of a near plane as a share of the light's reach. With a nearer one the depth at the end of the reach
-/// would be below the error of its interpolation.
+/// Is the least distance of a near plane as a share of the light's reach. With a nearer one the
+/// depth at the end of the reach would be below the error of its interpolation.
 const LEAST_SHARE: f64 = 1.0 / 16_777_216.0;
 
-/// Returns the world distance from `light` (render space) below which the near plane is not moved for the sake of the
-/// caster with these bounds. It is at most the share of `reach` that is resolved without any caster.
+/// Returns the world distance from `light` (render space) below which the near plane is not moved
+/// for the sake of the caster with these bounds. It is at most the share of `reach` that is
+/// resolved without any caster.
 pub(crate) fn nearest_for(bounds: &Aabb, light: DVec3, reach: f64) -> f64 {
     let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
     let half = (max - min) * 0.5;
@@ -51,12 +56,13 @@ mod tests {
         Aabb::new(-half, half)
     }
 
-    /// Checks the near planes of boxes that contain the light: each is well inside of what the box may be, and large boxes
-    /// have the share of the reach.
+    /// Checks the near planes of boxes that contain the light: each is well inside of what the box
+    /// may be, and large boxes have the share of the reach.
     #[test]
     fn boxes_that_contain_the_light_are_entered() {
         let nearest = |half: Vec3, reach| nearest_for(&around(half), DVec3::ZERO, reach);
-        // The shade of a lamp is entered before the horizon; in a room the share of the reach is nearer than needed.
+        // The shade of a lamp is entered before the horizon; in a room the share of the reach is
+        // nearer than needed.
         assert_eq!(nearest(Vec3::splat(0.125), 1e4), 0.125 / 16.0);
         assert_eq!(nearest(Vec3::splat(0.125), 4.0), 4.0 / 1024.0);
         // Rooms and towns tell nothing of their surfaces.

@@ -12,7 +12,8 @@ use crate::fit::stability::Stability;
 use crate::fit::visible::{self, Seen, SeenBounds};
 use crate::{Aabb, ShadowError};
 
-/// Returns how finely f64 distinguishes positions in `required`, if that is fine enough for the map of a cascade.
+/// Returns how finely f64 distinguishes positions in `required`, if that is fine enough for the map
+/// of a cascade.
 pub(crate) fn checked_spacing(
     input: &FitInput<'_>,
     limits: &FitLimits,
@@ -21,8 +22,8 @@ pub(crate) fn checked_spacing(
 ) -> Result<Spacing, ShadowError> {
     let spacing = Spacing::around(input.origin, required);
     let extent = || match slice {
-        // This is the extent of the slice and not of what is seen. That may be a corner of an object, which needs no
-        // finer texels than the rest of the image.
+        // This is the extent of the slice and not of what is seen. That may be a corner of an
+        // object, which needs no finer texels than the rest of the image.
         Some(slice) if limits.stability == Stability::TightFit => {
             let (depth_near, depth_far) = slice.between;
             let sphere = slice.camera.slice_sphere(depth_near, depth_far);
@@ -44,8 +45,8 @@ fn widest_given(input: &FitInput<'_>) -> f64 {
     input.axes.light_box(&given, DVec3::ZERO).widest_side()
 }
 
-/// Returns cascade `cascade` of the first camera's view. Returns `None` without a camera, or where its depths contain
-/// nothing. All cameras are divided at the same depths.
+/// Returns cascade `cascade` of the first camera's view. Returns `None` without a camera, or where
+/// its depths contain nothing. All cameras are divided at the same depths.
 pub(crate) fn camera_slice<'a>(
     input: &FitInput<'a>,
     limits: &FitLimits,
@@ -79,10 +80,10 @@ pub(crate) fn camera_slice<'a>(
     })
 }
 
-/// Returns the depths along the view that the spheres of a camera's slices must contain. The slices of a perspective
-/// camera end where its volume ends, so that only the projection changes them. An orthographic camera may be anywhere
-/// along its view, and its near and far planes do not bound the scene closely: its slices end where the visible
-/// receivers end, in steps that change rarely.
+/// Returns the depths along the view that the spheres of a camera's slices must contain. The slices
+/// of a perspective camera end where its volume ends, so that only the projection changes them. An
+/// orthographic camera may be anywhere along its view, and its near and far planes do not bound the
+/// scene closely: its slices end where the visible receivers end, in steps that change rarely.
 fn sphere_range(camera: &CameraFrustum, held_depths: Option<&HeldDepth>) -> (f64, f64) {
     let (near, far) = camera.depth_range();
     match held_depths {
@@ -93,7 +94,8 @@ fn sphere_range(camera: &CameraFrustum, held_depths: Option<&HeldDepth>) -> (f64
     }
 }
 
-/// Returns the depths along the view between which receivers are visible, in steps that change rarely.
+/// Returns the depths along the view between which receivers are visible, in steps that change
+/// rarely.
 pub(crate) fn held_depths(visible: &SeenBounds, held: Option<&HeldDepth>) -> Option<HeldDepth> {
     let (near, far) = (visible.depth_near, visible.depth_far);
     let least = f64::EPSILON.sqrt() * near.abs().max(far.abs()).max(f64::MIN_POSITIVE);
@@ -101,7 +103,8 @@ pub(crate) fn held_depths(visible: &SeenBounds, held: Option<&HeldDepth>) -> Opt
         .then(|| HeldDepth::fit(near, far, least, held))
 }
 
-/// Returns the light-space box of the receivers that cascade `cascade` is for, or `None` where there are none.
+/// Returns the light-space box of the receivers that cascade `cascade` is for, or `None` where
+/// there are none.
 pub(crate) fn required_box(
     input: &FitInput<'_>,
     limits: &FitLimits,

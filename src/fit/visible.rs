@@ -1,4 +1,5 @@
-//! Finds what each camera sees of the receivers, once a frame; the result is then divided among the cascades.
+//! Finds what each camera sees of the receivers, once a frame; the result is then divided among the
+//! cascades.
 
 use glam::DVec3;
 
@@ -31,8 +32,8 @@ impl SeenReceiver {
         }
     }
 
-    /// Returns the part of that side of the bounds, across `axis`, that faces the light; `None` where no side does or
-    /// nothing of it counts.
+    /// Returns the part of that side of the bounds, across `axis`, that faces the light; `None`
+    /// where no side does or nothing of it counts.
     pub fn lit_side(&self, axis: usize, toward_light: DVec3) -> Option<(DVec3, DVec3)> {
         let (mut min, mut max) = (self.min, self.max);
         if toward_light[axis] > 0.0 && max[axis] == f64::from(self.bounds.max[axis]) {
@@ -54,7 +55,8 @@ pub(crate) struct Seen {
     bounds: Aabb,
     /// States that all of it is in the camera's volume.
     wholly: bool,
-    /// Is the depth along the view at which the part that is seen begins; the next field is the depth at which it ends.
+    /// Is the depth along the view at which the part that is seen begins; the next field is the
+    /// depth at which it ends.
     depth_near: f64,
     depth_far: f64,
 }
@@ -99,7 +101,8 @@ impl SeenBounds {
 pub(crate) struct Receivers<'a> {
     /// Holds the bounds in render space.
     pub bounds: &'a [Aabb],
-    /// Holds, for each of them, the index of the caster whose surface it is, or `None` where it is not a caster's.
+    /// Holds, for each of them, the index of the caster whose surface it is, or `None` where it is
+    /// not a caster's.
     pub casters: &'a [Option<u32>],
 }
 
@@ -121,8 +124,8 @@ pub(crate) struct SeenLists {
 }
 
 impl SeenLists {
-    /// Fills the lists with the receivers that each of the cameras sees a part of, and returns the bounds of what they
-    /// see together.
+    /// Fills the lists with the receivers that each of the cameras sees a part of, and returns the
+    /// bounds of what they see together.
     pub fn find(&mut self, cameras: &[CameraFrustum], receivers: Receivers<'_>) -> SeenBounds {
         self.seen.clear();
         self.parts.clear();
@@ -188,7 +191,8 @@ impl SeenLists {
     }
 }
 
-/// Returns the light-space box of what the camera at `index` sees between two depths; it is empty if that is nothing.
+/// Returns the light-space box of what the camera at `index` sees between two depths; it is empty
+/// if that is nothing.
 pub(crate) fn light_box_between(
     (index, camera): (usize, &CameraFrustum),
     seen: &[Seen],
@@ -213,8 +217,8 @@ pub(crate) fn light_box_between(
     covered
 }
 
-/// Calls `visit` with points whose convex hull is, for each part that the camera at `index` sees between two depths,
-/// its intersection with `over`, the sides of a rectangle across the light.
+/// Calls `visit` with points whose convex hull is, for each part that the camera at `index` sees
+/// between two depths, its intersection with `over`, the sides of a rectangle across the light.
 pub(crate) fn visit_between(
     (index, camera): (usize, &CameraFrustum),
     seen: &[Seen],

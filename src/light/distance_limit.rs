@@ -5,14 +5,17 @@ use glam::DVec3;
 use crate::fit::{CameraFrustum, Region};
 use crate::receive::NO_LIMIT;
 
-/// Is the least fraction of the distance over which shadows fade: less is not distinguishable from a sharp end.
+/// Is the least fraction of the distance over which shadows fade: less is not distinguishable from
+/// a sharp end.
 const LEAST_FADE: f64 = 1e-4;
 
-/// Is the cosine of the largest angle between cameras that count as looking the same way, as the eyes of a headset do.
+/// Is the cosine of the largest angle between cameras that count as looking the same way, as the
+/// eyes of a headset do.
 const SAME_WAY_COSINE: f64 = 0.99;
 
-/// Returns the uniform's plane at which shadows end. It is at the farthest end of all cameras if all of them have one
-/// and look the same way; otherwise the result is [`NO_LIMIT`], and shadows end where the maps end.
+/// Returns the uniform's plane at which shadows end. It is at the farthest end of all cameras if
+/// all of them have one and look the same way; otherwise the result is [`NO_LIMIT`], and shadows
+/// end where the maps end.
 pub(crate) fn distance_limit(region: Region<'_>, fade: f32) -> [f32; 4] {
     let Region::Cameras([first, others @ ..]) = region else {
         return NO_LIMIT;
