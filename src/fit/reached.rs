@@ -48,7 +48,7 @@ impl Reached {
             near(bounds).map(|part| ReachedCaster {
                 index,
                 bounds: part,
-                nearest: nearest_for(bounds, light, reach),
+                nearest: nearest_for(bounds, light, reach, input.map_size),
                 farthest_corner: farthest_corner(bounds, light).max_element(),
             })
         }));

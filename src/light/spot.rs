@@ -51,9 +51,11 @@ impl Default for SpotShadowDescriptor<'_> {
 pub struct SpotLight {
     /// Is the absolute world position (f64), finite. The near plane of the map is at the bounds of
     /// the nearest caster, but no nearer than 1/1024 of half their largest side. Where bounds
-    /// contain the light, as those of a lamp shade or of a room do, it is at 1/16 of half their
-    /// smallest side. Both limits are at most 1/1024 of the distance to the farthest receiver that
-    /// is seen. What lies before the near plane casts nothing.
+    /// contain the light, as those of a lamp shade, of a room or of a whole scene do, it is at 1/16
+    /// of half their smallest side, or at the distance that costs half a texel of contact at the
+    /// farthest receiver that is seen (1/8192 of that receiver's distance in maps of 1024 texels),
+    /// whichever is farther. No limit is more than 1/1024 of the distance to that receiver. What
+    /// lies before the near plane casts nothing.
     pub position_world: DVec3,
     /// Is the direction in which the light shines, in world axes, finite and of any length but
     /// zero.

@@ -48,7 +48,7 @@ fn endless_lights_are_as_the_truth_says() {
                 street_lamp(ground),
             ];
             // A box that contains the light says nothing of how near the mesh is: the share of what is seen has to do.
-            if ground <= 50.0 {
+            if ground <= 200.0 {
                 settings.push(lamp_over_table(Shade::WholeScene, ground));
             }
             for setting in settings {
