@@ -64,14 +64,36 @@ impl LightAxes {
     pub fn toward_light(&self) -> DVec3 {
         self.light_from_world.row(2)
     }
+}
 
-    /// Returns the box in absolute light space of a box in the render space that begins at
-    /// `origin`.
-    pub(crate) fn light_box(&self, bounds: &Aabb, origin: DVec3) -> LightBox {
+/// Is the light space of a frame: the axes of a light and the position of render space.
+///
+/// Light coordinates are absolute: those of a point stay the same while `origin` moves with a
+/// camera.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LightSpace {
+    pub axes: LightAxes,
+    /// Is the world position at which render space begins.
+    pub origin: DVec3,
+}
+
+impl LightSpace {
+    /// Returns the light coordinates of a point of render space.
+    pub fn point(&self, point_render: DVec3) -> DVec3 {
+        self.axes.light_from_world * (self.origin + point_render)
+    }
+
+    /// Returns z of the light coordinates of a point of render space; it grows toward the light.
+    pub fn depth(&self, point_render: DVec3) -> f64 {
+        self.axes.toward_light().dot(self.origin + point_render)
+    }
+
+    /// Returns the box in light space around a box in render space.
+    pub fn bounds(&self, bounds: &Aabb) -> LightBox {
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
-        let center = self.light_from_world * (origin + (min + max) * 0.5);
+        let center = self.point((min + max) * 0.5);
         let half = (max - min) * 0.5;
-        let rows = self.light_from_world;
+        let rows = self.axes.light_from_world;
         let extent = DVec3::new(
             rows.row(0).abs().dot(half),
             rows.row(1).abs().dot(half),
@@ -203,16 +225,18 @@ mod tests {
     /// Checks that the fast box equals the box of the eight transformed corners.
     #[test]
     fn light_box_is_the_box_of_the_corners() {
-        let axes = LightAxes::new(DVec3::new(0.3, -0.7, 0.2), DVec3::Y);
+        let space = LightSpace {
+            axes: LightAxes::new(DVec3::new(0.3, -0.7, 0.2), DVec3::Y),
+            origin: DVec3::new(1e5, -2e5, 3e5),
+        };
         let bounds = Aabb::new(
             glam::Vec3::new(-1.0, 2.0, 3.0),
             glam::Vec3::new(4.0, 2.5, 9.0),
         );
-        let origin = DVec3::new(1e5, -2e5, 3e5);
-        let fast = axes.light_box(&bounds, origin);
+        let fast = space.bounds(&bounds);
         let mut exact = LightBox::EMPTY;
         for corner in 0..8 {
-            exact.include(axes.light_from_world * (origin + bounds.corner(corner).as_dvec3()));
+            exact.include(space.point(bounds.corner(corner).as_dvec3()));
         }
         // At a magnitude of 4e5, three products and sums come to 8 ulps of f64.
         let tolerance = 8.0 * f64::EPSILON * 4e5;

@@ -8,7 +8,7 @@
 use glam::DVec3;
 
 use crate::Aabb;
-use crate::fit::axes::{LightAxes, LightBox};
+use crate::fit::axes::{LightBox, LightSpace};
 use crate::fit::caster_shape::CasterShape;
 use crate::fit::view_rounding::position_error_world;
 use crate::fit::visible::SeenReceiver;
@@ -37,8 +37,7 @@ pub(crate) struct CasterPart {
 
 /// Holds what is known of the casters of a frame.
 pub(crate) struct Casters<'a> {
-    pub axes: &'a LightAxes,
-    pub origin: DVec3,
+    pub space: &'a LightSpace,
     /// Holds the bounds in render space; has one entry per caster.
     pub bounds: &'a [Aabb],
     pub shapes: &'a [CasterShape],
@@ -137,7 +136,7 @@ fn divide(casters: &Casters<'_>, caster: u32, seen: &[SeenReceiver], parts: &mut
     // receivers would cost more contact of all other shadows than its own shadow is worth.
     let farthest = bounds.min.abs().max(bounds.max.abs()).as_dvec3().length();
     let least_height = 8.0 * position_error_world(farthest);
-    let toward_light = casters.axes.toward_light();
+    let toward_light = casters.space.axes.toward_light();
     let mut add = |pair: Pair| {
         if pair.height <= least_height {
             return;
@@ -146,7 +145,7 @@ fn divide(casters: &Casters<'_>, caster: u32, seen: &[SeenReceiver], parts: &mut
         let same = parts[first..]
             .iter_mut()
             .find(|part| part.height.log2().floor() == octave);
-        let light = casters.axes.light_box(&pair.bounds, casters.origin);
+        let light = casters.space.bounds(&pair.bounds);
         match same {
             Some(part) => {
                 part.height = part.height.max(pair.height);
@@ -235,6 +234,7 @@ fn pair(caster: &Aabb, (min, max): (DVec3, DVec3), toward_light: DVec3) -> Optio
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fit::LightAxes;
     use glam::Vec3;
 
     const DOWNWARD: DVec3 = DVec3::new(0.0, -1.0, 0.0);
@@ -250,17 +250,16 @@ mod tests {
         shapes: &[CasterShape],
         seen: &[SeenReceiver],
     ) -> Vec<CasterPart> {
-        let axes = LightAxes::new(direction, DVec3::Y);
-        let casters = Casters {
-            axes: &axes,
+        let space = LightSpace {
+            axes: LightAxes::new(direction, DVec3::Y),
             origin: DVec3::ZERO,
+        };
+        let casters = Casters {
+            space: &space,
             bounds,
             shapes,
         };
-        let boxes: Vec<LightBox> = bounds
-            .iter()
-            .map(|bounds| axes.light_box(bounds, DVec3::ZERO))
-            .collect();
+        let boxes: Vec<_> = bounds.iter().map(|bounds| space.bounds(bounds)).collect();
         let mut visible = LightBox::EMPTY;
         boxes.iter().for_each(|bounds| visible.union(bounds));
         let mut scratch = PartScratch::default();

@@ -4,7 +4,7 @@
 use glam::DVec3;
 
 use crate::fit::axes::{LightAxes, LightBox};
-use crate::fit::cascade_bounds::{CascadeCasters, fit_bounds};
+use crate::fit::cascade_bounds::Cascade;
 use crate::fit::caster_parts::{Casters, PartScratch};
 use crate::fit::directional_input::{CasterBounds, FitInput, FitLimits, Region};
 use crate::fit::extruded_rect::ExtrudedRect;
@@ -70,20 +70,20 @@ impl DirectionalFit {
         scratch
             .casters
             .extend(input.casters.iter().map(|bounds| CasterBounds {
-                light: input.axes.light_box(bounds, input.origin),
+                light: input.space.bounds(bounds),
                 can_shadow: !bounds.is_empty()
-                    && can_shadow(bounds, &visible, input.axes.toward_light()),
+                    && can_shadow(bounds, &visible, input.space.axes.toward_light()),
             }));
         divide_casters(input, &visible, scratch);
         let any_casts = scratch.casters.iter().any(|caster| caster.can_shadow)
             || !scratch.parts.parts.is_empty();
-        let history = if self.holds_for(&input.axes) {
+        let history = if self.holds_for(&input.space.axes) {
             self.clone()
         } else {
             Self::default()
         };
         let mut next = history.clone();
-        next.axes = Some(input.axes);
+        next.axes = Some(input.space.axes);
         let depths = held_depths(&visible, history.held_depths.as_ref());
         next.held_depths = depths.or(history.held_depths);
         for cascade in 0..limits.cascades {
@@ -95,19 +95,15 @@ impl DirectionalFit {
             let held_bounds = match required {
                 Some(required) if any_casts => {
                     let spacing = checked_spacing(input, limits, slice.as_ref(), &required)?;
-                    let casters = CascadeCasters {
-                        whole: &scratch.casters,
-                        parts: &scratch.parts.parts,
-                    };
-                    let between = slice.as_ref().map(|slice| slice.between);
-                    fit_bounds(
+                    let cascade = Cascade {
                         input,
                         limits,
-                        &casters,
-                        (required, spacing),
-                        (seen, between),
-                        held,
-                    )
+                        casters: &scratch.casters,
+                        parts: &scratch.parts.parts,
+                        seen,
+                        between: slice.as_ref().map(|slice| slice.between),
+                    };
+                    cascade.fit(&required, spacing, held)
                 }
                 _ => None,
             };
@@ -116,7 +112,7 @@ impl DirectionalFit {
             next.light_bounds[cascade] = light_bounds;
             next.slices[cascade] = slice.zip(light_bounds).map(|(slice, light_bounds)| {
                 let scratch = &mut scratch.footprint;
-                slice.report(&input.axes, input.origin, &light_bounds.rect, scratch)
+                slice.report(&input.space, &light_bounds.rect, scratch)
             });
         }
         Ok(next)
@@ -133,8 +129,8 @@ impl DirectionalFit {
         drawn: &mut Vec<u32>,
     ) -> Option<&LightSpaceBounds> {
         let light_bounds = self.light_bounds[cascade].as_ref()?;
-        let spacing = Spacing::around(input.origin, &light_bounds.bounds());
-        let volume = ExtrudedRect::new(&input.axes, input.origin, &light_bounds.rect);
+        let spacing = Spacing::around(input.space.origin, &light_bounds.bounds());
+        let volume = ExtrudedRect::new(&input.space, &light_bounds.rect);
         let reaches = |light: &LightBox, bounds: &Aabb| {
             light_bounds.holds_part_of(&spacing.widest(light)) && volume.meets(bounds)
         };
@@ -173,13 +169,12 @@ fn divide_casters(input: &FitInput<'_>, visible: &SeenBounds, scratch: &mut FitS
         return scratch.parts.clear();
     }
     let casters = Casters {
-        axes: &input.axes,
-        origin: input.origin,
+        space: &input.space,
         bounds: input.casters,
         shapes: input.shapes,
     };
     let visible = Aabb::around(visible.render_min, visible.render_max);
-    let visible = input.axes.light_box(&visible, input.origin);
+    let visible = input.space.bounds(&visible);
     let candidates = (0u32..).zip(&scratch.casters);
     let candidates = candidates.filter(|(_, caster)| caster.can_shadow);
     let candidates = candidates.map(|(index, caster)| (index, caster.light));

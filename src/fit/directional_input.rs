@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::Aabb;
-use crate::fit::axes::{LightAxes, LightBox};
+use crate::fit::axes::{LightBox, LightSpace};
 use crate::fit::camera::CameraFrustum;
 use crate::fit::caster_shape::CasterShape;
 use crate::fit::split::SplitRule;
@@ -24,8 +24,7 @@ pub(crate) enum Region<'a> {
 
 /// Holds the input of a frame.
 pub(crate) struct FitInput<'a> {
-    pub axes: LightAxes,
-    pub origin: DVec3,
+    pub space: LightSpace,
     pub region: Region<'a>,
     /// Holds the bounds of what casts; empty ones cast nothing.
     pub casters: &'a [Aabb],
@@ -69,7 +68,7 @@ impl FitInput<'_> {
     /// Returns the farthest render coordinate, along an axis of the light, of what is covered up to
     /// the highest receiver.
     pub fn render_reach(&self, covered: &LightBox, highest_receiver: f64) -> f64 {
-        let origin_light = self.axes.light_from_world * self.origin;
+        let origin_light = self.space.point(DVec3::ZERO);
         let highest = covered.max.with_z(highest_receiver);
         (covered.min - origin_light)
             .abs()

@@ -4,7 +4,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::Aabb;
-use crate::fit::LightAxes;
+use crate::fit::axes::LightSpace;
 use crate::fit::map_rect::MapRect;
 use crate::fit::region::{HalfSpace, HalfSpaces};
 
@@ -32,7 +32,8 @@ struct Side {
 }
 
 impl ExtrudedRect {
-    pub fn new(axes: &LightAxes, origin: DVec3, rect: &MapRect) -> Self {
+    pub fn new(space: &LightSpace, rect: &MapRect) -> Self {
+        let LightSpace { axes, origin } = space;
         let half = (rect.max() - rect.min) * 0.5;
         let center = rect.min + half;
         let center_world = axes.right() * center.x + axes.up() * center.y;
@@ -48,7 +49,7 @@ impl ExtrudedRect {
         });
         Self {
             // Any point of the axis is as good: normals are perpendicular to the light.
-            center_render: center_world - origin,
+            center_render: center_world - *origin,
             // The error is a few ulps of what was subtracted.
             center_error: 8.0 * f64::EPSILON * origin.length().max(center_world.length()),
             sides,
@@ -75,12 +76,12 @@ impl ExtrudedRect {
 /// of render space.
 pub(crate) fn push_extruded_rect(
     region: &mut HalfSpaces,
-    axes: &LightAxes,
-    origin: DVec3,
+    space: &LightSpace,
     (min, max): (DVec2, DVec2),
 ) {
+    let LightSpace { axes, origin } = space;
     for (axis, low, high) in [(axes.right(), min.x, max.x), (axes.up(), min.y, max.y)] {
-        let origin = axis.dot(origin);
+        let origin = axis.dot(*origin);
         region.push(HalfSpace {
             normal: axis,
             offset: origin - low,
@@ -95,7 +96,7 @@ pub(crate) fn push_extruded_rect(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::LightBox;
+    use crate::fit::axes::{LightAxes, LightBox};
 
     /// Returns pseudo-random numbers in -1..1.
     fn noise(state: &mut u32) -> f64 {
@@ -115,6 +116,7 @@ mod tests {
             let direction = DVec3::new(random(), random(), random());
             let axes = LightAxes::new(direction, DVec3::Y);
             let origin = DVec3::new(random(), random(), random()) * 1e4;
+            let space = LightSpace { axes, origin };
             let middle = DVec3::new(random(), random(), random()) * 3.0;
             let half = DVec3::new(random(), random(), random()).abs() * 1.5;
             let bounds = Aabb::new((middle - half).as_vec3(), (middle + half).as_vec3());
@@ -125,11 +127,11 @@ mod tests {
                 texel,
                 map_size: 32,
             };
-            let light: LightBox = axes.light_box(&bounds, origin);
+            let light: LightBox = space.bounds(&bounds);
             let (min, max) = (rect.min, rect.max());
             let interval =
                 light.min.truncate().cmple(max).all() && light.max.truncate().cmpge(min).all();
-            let met = interval && ExtrudedRect::new(&axes, origin, &rect).meets(&bounds);
+            let met = interval && ExtrudedRect::new(&space, &rect).meets(&bounds);
             let clipped = |grow: f64| {
                 let grown = MapRect {
                     min: rect.min - grow,
@@ -137,7 +139,7 @@ mod tests {
                     ..rect
                 };
                 let mut region = HalfSpaces::default();
-                push_extruded_rect(&mut region, &axes, origin, (grown.min, grown.max()));
+                push_extruded_rect(&mut region, &space, (grown.min, grown.max()));
                 let mut any = false;
                 region.visit_vertices(&bounds, |_| any = true);
                 any

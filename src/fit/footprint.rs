@@ -1,10 +1,10 @@
 //! Measures how much of a cascade's map falls on its slice of the view, and how its texels compare
 //! with the image's pixels.
 
-use glam::{DVec2, DVec3, Vec2};
+use glam::{DVec2, Vec2};
 
 use crate::Aabb;
-use crate::fit::LightAxes;
+use crate::fit::axes::LightSpace;
 use crate::fit::camera::CameraFrustum;
 use crate::fit::extruded_rect::push_extruded_rect;
 use crate::fit::map_rect::MapRect;
@@ -58,14 +58,13 @@ impl Slice<'_> {
     /// Returns how `rect` covers the slice.
     pub fn report(
         &self,
-        axes: &LightAxes,
-        origin: DVec3,
+        space: &LightSpace,
         rect: &MapRect,
         scratch: &mut FootprintScratch,
     ) -> SliceReport {
         let (near, far) = self.between;
         let mut region = self.camera.slice(near, far);
-        push_extruded_rect(&mut region, axes, origin, (rect.min, rect.max()));
+        push_extruded_rect(&mut region, space, (rect.min, rect.max()));
         let visible = Aabb::new(
             self.visible.render_min.as_vec3(),
             self.visible.render_max.as_vec3(),
@@ -73,8 +72,9 @@ impl Slice<'_> {
         // The points are relative to the rectangle, so that a distant origin costs no precision.
         scratch.points.clear();
         region.visit_vertices(&visible, |vertex| {
-            let light = axes.light_from_world * (origin + vertex);
-            scratch.points.push(light.truncate() - rect.min);
+            scratch
+                .points
+                .push(space.point(vertex).truncate() - rect.min);
         });
         let size = rect.max() - rect.min;
         let share = hull_area(scratch) / (size.x * size.y);

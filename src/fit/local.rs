@@ -8,7 +8,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::Aabb;
-use crate::fit::axes::LightAxes;
+use crate::fit::axes::{LightAxes, LightSpace};
 use crate::fit::local_input::LocalInput;
 use crate::fit::map_rect::{HeldRect, MapRect, MapRectRequest};
 use crate::fit::reached::{self, Reached};
@@ -252,7 +252,11 @@ impl ViewFrame<'_> {
 
     /// Returns the box's intervals on the view's axes, measured from the light.
     fn span(&self, bounds: &Aabb) -> Span {
-        let local = self.axes.light_box(bounds, -self.light);
+        let around_light = LightSpace {
+            axes: *self.axes,
+            origin: -self.light,
+        };
+        let local = around_light.bounds(bounds);
         Span {
             min: local.min.truncate(),
             max: local.max.truncate(),

@@ -4,7 +4,7 @@
 //! ```text
 //! camera.rs       the engine's camera as half-spaces and depth along the view
 //! region.rs       exact vertices of (convex region ∩ box)
-//! axes.rs         world-fixed light axes, boxes in light space
+//! axes.rs         world-fixed light axes, light space and boxes in it
 //! footprint.rs    which part of a slice of the view a map rectangle covers
 //! size_step.rs    quantized size steps with hysteresis
 //! map_rect.rs     the rectangle of a map plane that a view covers, snapped to whole texels
@@ -52,7 +52,7 @@ mod view_rounding;
 mod visible;
 
 pub use axes::LightAxes;
-pub(crate) use axes::LightBox;
+pub(crate) use axes::{LightBox, LightSpace};
 pub(crate) use camera::CameraFrustum;
 pub use camera::CameraView;
 pub use caster_shape::CasterShape;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::fit::axes::LightBox;
+use crate::fit::axes::{LightBox, LightSpace};
 use crate::fit::camera::CameraFrustum;
 use crate::fit::directional_input::{FitInput, FitLimits, Region};
 use crate::fit::footprint::Slice;
@@ -20,7 +20,7 @@ pub(crate) fn checked_spacing(
     slice: Option<&Slice<'_>>,
     required: &LightBox,
 ) -> Result<Spacing, ShadowError> {
-    let spacing = Spacing::around(input.origin, required);
+    let spacing = Spacing::around(input.space.origin, required);
     let extent = || match slice {
         // This is the extent of the slice and not of what is seen. That may be a corner of an
         // object, which needs no finer texels than the rest of the image.
@@ -42,7 +42,12 @@ fn widest_given(input: &FitInput<'_>) -> f64 {
     let given = given
         .filter(|bounds| !bounds.is_empty())
         .fold(Aabb::EMPTY, |all, bounds| all.union(*bounds));
-    input.axes.light_box(&given, DVec3::ZERO).widest_side()
+    // Where the origin is does not matter for a side, and a distant one would cost its precision.
+    let space = LightSpace {
+        origin: DVec3::ZERO,
+        ..input.space
+    };
+    space.bounds(&given).widest_side()
 }
 
 /// Returns cascade `cascade` of the first camera's view. Returns `None` without a camera, or where
@@ -113,21 +118,19 @@ pub(crate) fn required_box(
     cascade: usize,
 ) -> Option<LightBox> {
     let mut required = LightBox::EMPTY;
-    let of_box = |bounds: &Aabb| input.axes.light_box(bounds, input.origin);
     match input.region {
         Region::Bounds(bounds) if cascade == 0 && !bounds.is_empty() => {
-            required = of_box(&bounds);
+            required = input.space.bounds(&bounds);
         }
         Region::Everything if cascade == 0 => {
             let receivers = input.receivers.iter();
-            receivers.for_each(|(bounds, _)| required.union(&of_box(bounds)));
+            receivers.for_each(|(bounds, _)| required.union(&input.space.bounds(bounds)));
         }
         Region::Bounds(_) | Region::Everything => {}
         Region::Cameras(cameras) => {
             let between = slice?.between;
-            let (axes, origin) = (&input.axes, input.origin);
             for camera in cameras.iter().enumerate() {
-                let seen = visible::light_box_between(camera, seen, between, axes, origin);
+                let seen = visible::light_box_between(camera, seen, between, &input.space);
                 if seen.is_empty() {
                     continue;
                 }
@@ -149,7 +152,7 @@ fn around_slice(
     seen: LightBox,
 ) -> LightBox {
     let sphere = camera.slice_sphere(between.0, between.1);
-    let center = input.axes.light_from_world * (input.origin + sphere.center_render);
+    let center = input.space.point(sphere.center_render);
     LightBox {
         min: (center - sphere.radius).with_z(seen.min.z),
         max: (center + sphere.radius).with_z(seen.max.z),

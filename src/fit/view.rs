@@ -3,7 +3,7 @@
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, Mat4, Vec2, Vec3};
 
 use crate::ShadowError;
-use crate::fit::LightAxes;
+use crate::fit::axes::{LightAxes, LightSpace};
 use crate::fit::map_rect::{LightSpaceBounds, MapRect};
 
 /// Describes one depth render: a cascade of a directional light, the map of a spot light, a face of
@@ -95,9 +95,8 @@ impl ShadowView {
     /// Returns the orthographic view over light-space bounds, for an engine whose render space
     /// begins at `origin`.
     pub(crate) fn orthographic(
-        axes: &LightAxes,
+        &LightSpace { axes, origin }: &LightSpace,
         bounds: &LightSpaceBounds,
-        origin: DVec3,
         layer: u32,
     ) -> Self {
         let (rect, depth) = (&bounds.rect, &bounds.depth);
@@ -125,7 +124,7 @@ impl ShadowView {
             anchor_render,
             clip_from_anchor,
             placement: ViewPlacement::Orthographic {
-                axes: *axes,
+                axes,
                 bounds: *bounds,
             },
             render_reach: f64::from(anchor_render.abs().max_element()) + half.length(),
@@ -186,7 +185,8 @@ impl ShadowView {
     pub(crate) fn rebased(&self, origin: DVec3) -> Self {
         match &self.placement {
             ViewPlacement::Orthographic { axes, bounds } => {
-                Self::orthographic(axes, bounds, origin, self.layer)
+                let axes = *axes;
+                Self::orthographic(&LightSpace { axes, origin }, bounds, self.layer)
             }
             ViewPlacement::Perspective { position_world, .. } => {
                 let anchor_render = (*position_world - origin).as_vec3();

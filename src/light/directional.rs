@@ -5,7 +5,8 @@ use glam::Vec3;
 use crate::cast::{FrameCasters, ViewDraws};
 use crate::check;
 use crate::fit::{
-    DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, MAX_CASCADES, Receivers, Region,
+    DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, LightSpace, MAX_CASCADES,
+    Receivers, Region,
 };
 use crate::light::distance_limit::distance_limit;
 use crate::light::large_triangles::depth_reach;
@@ -237,8 +238,10 @@ impl DirectionalShadow {
         let axes = light.axes()?;
         self.check_distances(frame)?;
         let input = FitInput {
-            axes,
-            origin: frame.origin,
+            space: LightSpace {
+                axes,
+                origin: frame.origin,
+            },
             region: frame.region,
             casters: frame.casters.bounds,
             shapes: frame.casters.shapes,
@@ -297,8 +300,7 @@ impl DirectionalShadow {
                 self.maps.return_list(drawn);
                 continue;
             };
-            let view =
-                ShadowView::orthographic(&input.axes, light_bounds, input.origin, cascade as u32);
+            let view = ShadowView::orthographic(&input.space, light_bounds, cascade as u32);
             let view = view.checked()?;
             let reach = depth_reach(&view, casters, &drawn);
             views.push(ViewDraws::new(view.over_depths_from(reach), drawn));
