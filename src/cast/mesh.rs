@@ -15,9 +15,10 @@ use crate::{Aabb, ShadowView};
 
 /// Casts the shadow of a mesh with one transform.
 ///
-/// Its [`Revision`] changes when [`set_transform`](Self::set_transform) changes the transform and
-/// when [`geometry_changed`](Self::geometry_changed) is called, so that meshes that do not move
-/// keep their maps. Buffers whose contents change without such a call leave a stale shadow behind.
+/// Its [`Revision`] changes when [`set_transform`](Self::set_transform) changes the transform, when
+/// [`set_geometry`](Self::set_geometry) replaces the buffers, and when
+/// [`geometry_changed`](Self::geometry_changed) is called, so that meshes that do not move keep
+/// their maps. Buffers whose contents change without such a call leave a stale shadow behind.
 #[derive(Debug)]
 pub struct MeshCaster {
     pipeline: CasterPipeline,
@@ -51,7 +52,11 @@ impl MeshCaster {
     ) -> Result<Self, CasterError> {
         check_matrix(&descriptor.render_from_model)?;
         check_pipeline(device, descriptor.pipeline)?;
-        check_buffers(device, descriptor)?;
+        check_buffers(
+            descriptor.pipeline,
+            descriptor.vertices,
+            &descriptor.indices,
+        )?;
         let has_matrix = matches!(
             descriptor.pipeline.model_transform(),
             ModelTransform::InstanceMatrix { .. }
@@ -138,6 +143,30 @@ impl MeshCaster {
         self.bounds_render = self.bounds(&bounds_model, &self.render_from_model)?;
         self.bounds_model = bounds_model;
         self.version += 1;
+        Ok(())
+    }
+
+    /// Replaces the geometry, for an engine whose buffer has grown or that draws another range of
+    /// it: `vertices` and `indices` as in [`MeshCasterDescriptor`], and the bounds of what they draw
+    /// in model space. Maps that show the old geometry are drawn again. The shape
+    /// ([`set_shape`](Self::set_shape)) stays; set it anew if it does not hold for the new geometry,
+    /// which otherwise loses shadows on itself.
+    ///
+    /// Passes that were recorded before draw the old buffers, whenever they are submitted.
+    ///
+    /// # Errors
+    /// Returns [`CasterError`] for bounds that are neither finite nor empty, and for buffers and
+    /// ranges that [`MeshCaster::new`] refuses; the mesh keeps those that it had.
+    pub fn set_geometry(
+        &mut self,
+        vertices: &wgpu::Buffer,
+        indices: MeshIndices,
+        bounds_model: Aabb,
+    ) -> Result<(), CasterError> {
+        check_buffers(&self.pipeline, vertices, &indices)?;
+        self.geometry_changed(bounds_model)?;
+        self.vertices = vertices.clone();
+        self.indices = indices;
         Ok(())
     }
 

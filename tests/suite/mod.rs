@@ -37,6 +37,7 @@ mod keeping;
 mod kept_origin;
 mod local_reach;
 mod mesh_errors;
+mod mesh_geometry;
 mod mirrored_views;
 mod never_stale;
 mod omni;
