@@ -76,8 +76,11 @@ pub enum ShadowError {
     /// that f64 does not distinguish its texels. That is so where four steps of f64 (`2⁻⁵⁰
     /// coordinate_world`) exceed the texel size that `extent_world` leads to, and also exceed what
     /// f32 resolves at `distance_world`. That texel size is `extent_world` divided by the map's
-    /// texels per side, or by 64 if the map has fewer. A map of 2048 texels over 100 units fails at
-    /// 5·10¹³ units from the world origin and beyond.
+    /// texels per side, or by 64 if the map has fewer. A map of 2048 texels over 100 units fails
+    /// beyond 5.5·10¹³ units from the world origin. Under a camera with
+    /// [`Stability::TightFit`](crate::Stability::TightFit) the extent is that of a cascade's slice
+    /// of the view, or of all casters and receivers together if that is less, and not of the part
+    /// that the map is fitted to.
     #[error(
         "the fitted view must be representable in f32 and f64, got an extent of {extent_world} world units at {distance_world} from the render origin and {coordinate_world} from the world origin"
     )]

@@ -36,10 +36,10 @@ pub struct ShadowFrameDescriptor<'d, 'c> {
     /// subtracts displaces all shadows.
     ///
     /// The texels of a directional light keep their positions in the world, so f64 must distinguish
-    /// them there. With texels of `t` units, in maps of 64 or more texels per side, a frame is
-    /// accepted up to a distance from the world origin of at least `2⁴⁷ t` units, which is 1.4·10¹²
-    /// units for texels of a hundredth of a unit. At some hundred times that distance the light's
-    /// `record` returns [`ShadowError::ViewNotRepresentable`].
+    /// them there. A frame whose view extends over `e` units, in a map of `n` texels per side (64
+    /// if it has fewer), is taken up to a distance of `2⁵⁰ e / n` units from the world origin,
+    /// which is 5·10¹³ units for 100 units in 2048 texels. Beyond that the light's `record` returns
+    /// [`ShadowError::ViewNotRepresentable`], whose docs tell more.
     pub origin: DVec3,
     /// Selects the receivers for which the shadows are rendered.
     pub coverage: Coverage<'d>,
