@@ -1,7 +1,7 @@
 //! Turns the engine's camera, given as any pair of matrices, into half-spaces and depth along the
 //! view.
 
-use glam::{DMat4, DVec3, DVec4, Mat4, Vec3};
+use glam::{DMat4, DVec3, DVec4, Mat4};
 
 use crate::ShadowError;
 use crate::fit::image_corners::{ImageCorners, SliceSphere};
@@ -169,8 +169,8 @@ impl CameraFrustum {
     }
 
     /// Returns the camera's position in render space.
-    pub fn eye_render(&self) -> Vec3 {
-        self.eye.as_vec3()
+    pub fn eye(&self) -> DVec3 {
+        self.eye
     }
 
     /// Returns the depth of a point along the view in world units.

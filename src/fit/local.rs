@@ -46,12 +46,6 @@ struct Extent {
 }
 
 impl LocalFit {
-    /// Discards the extents of earlier frames.
-    pub fn reset_history(&mut self) {
-        self.held = [None; MAX_LOCAL_VIEWS];
-        self.held_reach = None;
-    }
-
     /// Returns the fit for this frame. Each list of `drawn` is filled with the indices of the
     /// casters of one view.
     pub fn fit(

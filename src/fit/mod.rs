@@ -61,6 +61,7 @@ pub(crate) use directional_input::{FitInput, FitLimits, Region};
 pub use footprint::SliceReport;
 pub(crate) use local::{LocalFit, MAX_LOCAL_VIEWS};
 pub(crate) use local_input::LocalInput;
+pub(crate) use map_rect::LightSpaceBounds;
 pub(crate) use reached::Reached;
 pub(crate) use region::HalfSpaces;
 pub use split::CascadeSplit;

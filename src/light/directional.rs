@@ -8,7 +8,7 @@ use crate::fit::{
     DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, LightSpace, MAX_CASCADES,
     Receivers, Region,
 };
-use crate::light::distance_limit::distance_limit;
+use crate::light::distance_limit::{distance_limit, shadowed_texels};
 use crate::light::large_triangles::depth_reach;
 use crate::receive::{
     LayerState, MapsFrame, Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, ShadowReport,
@@ -253,8 +253,10 @@ impl DirectionalShadow {
         let fit = self.fit.fit(&input, &self.limits, &mut self.scratch)?;
         let views = self.drawn_views(&fit, &input, &frame.casters)?;
         let limit = distance_limit(frame.region, self.maps.sampling().fade);
-        let layers: [_; MAX_CASCADES] = std::array::from_fn(|layer| {
-            LayerState::directional(layer as u32, limit, fit.slices[layer])
+        let layers: [_; MAX_CASCADES] = std::array::from_fn(|layer| LayerState {
+            limit,
+            shadowed_texels: shadowed_texels(&input, fit.light_bounds[layer].as_ref()),
+            ..LayerState::directional(layer as u32, fit.slices[layer])
         });
         let maps_frame = MapsFrame {
             views,

@@ -6,7 +6,7 @@ use glam::DVec3;
 use crate::cast::ViewDraws;
 use crate::fit::{LightAxes, LocalFit, LocalInput, MAX_LOCAL_VIEWS, PerspectiveView, Reached};
 use crate::light::distance_limit::range_limit;
-use crate::receive::{LayerState, MapsFrame, ShadowMaps, ShadowMapsDescriptor};
+use crate::receive::{ALL_TEXELS, LayerState, MapsFrame, ShadowMaps, ShadowMapsDescriptor};
 use crate::{ShadowError, ShadowFrame, ShadowView, report::ShadowReport};
 
 /// Holds spot or point lights in the slots of one set of maps. A single light has one slot; a pool
@@ -100,9 +100,9 @@ impl LocalLights {
 
     /// Discards the extents of earlier frames.
     pub fn reset_history(&mut self) {
-        self.slots
-            .iter_mut()
-            .for_each(|slot| slot.fit.reset_history());
+        for slot in &mut self.slots {
+            slot.fit = LocalFit::default();
+        }
     }
 
     /// Resets the state of a slot, whose next light then has no map until it is drawn.
@@ -147,6 +147,7 @@ impl LocalLights {
                 anchor_render: (position_world - frame.origin).as_vec3(),
                 range_world: f64::from(range),
                 limit: range_limit(range, maps.sampling().fade),
+                shadowed_texels: ALL_TEXELS,
                 deferred: !candidate.refreshed,
                 slice: None,
             }));

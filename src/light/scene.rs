@@ -16,11 +16,24 @@ pub enum Coverage<'a> {
     /// Covers what any of these cameras sees: one for an ordinary frame, several for the eyes of a
     /// headset, a split screen or a mirror. All of them sample the same maps. With an empty list
     /// nothing counts as seen, and nothing is drawn.
+    ///
+    /// The array must live until [`ShadowScene::frame`] returns. Where the descriptor is a variable
+    /// of its own, the array needs a name as well (`let cameras = [camera];`, then
+    /// `Coverage::Cameras(&cameras)`): otherwise compilers before Rust 1.89 report a temporary
+    /// value that is dropped while borrowed (E0716).
     Cameras(&'a [CameraView]),
-    /// Covers what lies in a box of render space, as textbook examples do. The light-space bounds
-    /// of a directional light then follow from this box, whatever the casters, and its first
-    /// cascade alone covers it. Surfaces outside the box are lit. The box must be finite; an empty
-    /// one covers nothing.
+    /// Covers what lies in a box of render space, as textbook examples do. The box must be finite;
+    /// an empty one covers nothing.
+    ///
+    /// The light-space bounds of a directional light then follow from this box, whatever the
+    /// casters, and its first cascade alone covers it. Its shadows end at the sides of the smallest
+    /// rectangle, along the axes of the map, that holds the box as seen from the light, or up to a
+    /// texel beyond. So they end steadily wherever the box moves, but not at the box itself: a
+    /// surface in front of the box or behind it, seen from the light, keeps its shadows. They end
+    /// at once, because a [`fade`](crate::DirectionalShadowDescriptor::fade) needs a distance. (The
+    /// lookup compares a position with the rectangle and with one plane. The six sides of the box
+    /// would cost every lookup of every light, under cameras as well.) Shadows of spot and point
+    /// lights end at their range.
     Bounds(Aabb),
     /// Covers all receivers, wherever they are: for scenes that are small or that are seen from
     /// everywhere.
@@ -165,7 +178,7 @@ impl ShadowFrame<'_> {
     /// camera.
     pub(crate) fn camera_render(&self) -> Option<Vec3> {
         match self.region {
-            Region::Cameras(cameras) => cameras.first().map(CameraFrustum::eye_render),
+            Region::Cameras(cameras) => cameras.first().map(|camera| camera.eye().as_vec3()),
             Region::Bounds(_) | Region::Everything => None,
         }
     }

@@ -9,7 +9,7 @@ use crate::receive::layer_limits::check_layers;
 use crate::receive::report::{ShadowReport, ViewReport, ViewStatus};
 use crate::receive::sampled_maps::{SampledMaps, Selection};
 use crate::receive::{
-    Sampling, ShadowViewUniform, empty_view_uniform, endless_range, view_uniform,
+    NO_LIMIT, Sampling, ShadowViewUniform, empty_view_uniform, endless_range, view_uniform,
     view_uniform_bytes,
 };
 use crate::{ShadowError, ShadowView, report::SliceReport};
@@ -72,6 +72,9 @@ pub(crate) struct LayerState {
     pub range_world: f64,
     /// Is where the light's shadows end, as the uniform has it.
     pub limit: [f32; 4],
+    /// Bounds the texels in which positions have shadows, in addition to the bounds of the map:
+    /// least x and y, greatest x and y.
+    pub shadowed_texels: [f32; 4],
     /// States that the layer needed drawing and was deferred.
     pub deferred: bool,
     /// Describes the slice of a camera's view that the layer covers as a cascade.
@@ -79,18 +82,27 @@ pub(crate) struct LayerState {
 }
 
 impl LayerState {
-    /// Returns the state of a layer of a directional light.
-    pub fn directional(layer: u32, limit: [f32; 4], slice: Option<SliceReport>) -> Self {
+    /// Returns the state of a layer of a directional light without a limit to its shadows.
+    pub fn directional(layer: u32, slice: Option<SliceReport>) -> Self {
         Self {
             layer,
             anchor_render: Vec3::ZERO,
             range_world: f64::INFINITY,
-            limit,
+            limit: NO_LIMIT,
+            shadowed_texels: ALL_TEXELS,
             deferred: false,
             slice,
         }
     }
 }
+
+/// Is the value of [`LayerState::shadowed_texels`] for shadows that end where the map ends.
+pub(crate) const ALL_TEXELS: [f32; 4] = [
+    f32::NEG_INFINITY,
+    f32::NEG_INFINITY,
+    f32::INFINITY,
+    f32::INFINITY,
+];
 
 /// Holds the input of a frame for the maps.
 pub(crate) struct MapsFrame<'a> {
@@ -302,7 +314,16 @@ impl ShadowMaps {
             uniforms[draws.view.layer() as usize] = view_uniform(&draws.view, &self.sampling);
         }
         for base in layers {
-            uniforms[base.layer as usize].limit = base.limit;
+            let uniform = &mut uniforms[base.layer as usize];
+            uniform.limit = base.limit;
+            for (side, inner) in uniform.inner.iter_mut().enumerate() {
+                let end = base.shadowed_texels[side];
+                *inner = if side < 2 {
+                    inner.max(end)
+                } else {
+                    inner.min(end)
+                };
+            }
         }
         for uniform in &mut uniforms {
             uniform.sample_radius = self.sampling.filter.radius_world();

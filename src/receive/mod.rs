@@ -34,7 +34,7 @@ pub use bindings::{ShadowBindings, ShadowBindingsDescriptor};
 pub(crate) use check_sampling::{check_bias, check_fade, check_filter, check_planar_filter};
 pub use filter::Filter;
 pub use maps::ShadowMaps;
-pub(crate) use maps::{LayerState, MapsFrame, ShadowMapsDescriptor};
+pub(crate) use maps::{ALL_TEXELS, LayerState, MapsFrame, ShadowMapsDescriptor};
 pub use report::{ShadowReport, ViewReport, ViewStatus};
 pub(crate) use sampled_maps::{SampledMaps, Selection};
 pub use uniforms::ShadowViewUniform;
