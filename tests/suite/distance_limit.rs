@@ -182,7 +182,8 @@ fn eyes_that_are_turned_apart_share_an_end_anywhere() {
                 Point::rounded(position, DVec3::Y),
             )
         };
-        let positions: Vec<_> = (5..80).map(|depth| in_view(f64::from(depth))).collect();
+        let depths = (50..800).map(|depth| f64::from(depth) * 0.1);
+        let positions: Vec<_> = depths.map(in_view).collect();
         let points: Vec<_> = positions.iter().map(|(_, point)| *point).collect();
         for ((depth, _), seen) in positions.iter().zip(seen(&descriptor, &eyes, &points)) {
             if (depth - 40.0).abs() > 0.1 {

@@ -40,7 +40,7 @@ pub enum Shade {
 }
 
 /// One mesh of the triangles of all.
-fn merged(meshes: &[Mesh]) -> Mesh {
+pub fn merged(meshes: &[Mesh]) -> Mesh {
     let mut all = Mesh::default();
     for mesh in meshes {
         let first = all.positions.len() as u32;
@@ -60,7 +60,7 @@ fn camera(eye: [f64; 3], target: [f64; 3]) -> Camera {
 }
 
 /// The sides and the lid of a shade that is open below, all of them `half` away from the light.
-fn shade(light: DVec3, half: f64) -> Vec<Mesh> {
+pub fn shade(light: DVec3, half: f64) -> Vec<Mesh> {
     let corner = |x: f64, y: f64, z: f64| (light + DVec3::new(x, y, z) * half).as_vec3();
     let side = 2.0 * half as f32;
     let (across, along, up) = (Vec3::X * side, Vec3::Z * side, Vec3::Y * 0.9 * side);
@@ -235,6 +235,15 @@ impl Lamp {
         .expect("a frame")
     }
 
+    /// Discards what the light keeps of earlier frames.
+    pub fn reset_history(&mut self) {
+        match self {
+            Self::Omni(lamp) => lamp.reset_history(),
+            Self::Spot(spot) => spot.reset_history(),
+            Self::Pool(pool, _) => pool.reset_history(),
+        }
+    }
+
     pub fn ask(&self) -> Ask {
         match self {
             Self::Omni(lamp) => Ask::light(gpu(), lamp.maps()),
@@ -253,7 +262,18 @@ impl Lamp {
 
     /// The receivers that the camera of `setting` sees and the light shines on, and that are settled: around them, `lift` above
     /// them along the normal, and a share `nearer` of their way to the light.
-    pub fn truth(&self, setting: &Setting, scene: &Scene, (lift, nearer): (f64, f64)) -> Settled {
+    pub fn truth(&self, setting: &Setting, scene: &Scene, rounding: (f64, f64)) -> Settled {
+        self.truth_of_pixels(setting, scene, rounding, (150, 100))
+    }
+
+    /// The same for an image of `pixels`.
+    pub fn truth_of_pixels(
+        &self,
+        setting: &Setting,
+        scene: &Scene,
+        (lift, nearer): (f64, f64),
+        pixels: (u32, u32),
+    ) -> Settled {
         let is_spot = matches!(self, Self::Spot(_));
         let light = setting.light;
         let half_side = if is_spot { CONE.tan() } else { 1.0 };
@@ -266,7 +286,7 @@ impl Lamp {
         settled_in_view(
             &scene.triangles,
             &setting.camera,
-            (150, 100),
+            pixels,
             &Lookup {
                 light,
                 tangent,

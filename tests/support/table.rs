@@ -65,6 +65,7 @@ const TOPICS: [(&str, &[&str]); 8] = [
             "fuzz",
             "fuzz_reference",
             "fuzz_untidy",
+            "fuzz_untidy_lamps",
             "fuzz_values",
         ],
     ),

@@ -19,7 +19,7 @@ const GROUNDS: [f32; 6] = [5.0, 50.0, 200.0, 1e3, 1e4, 1e5];
 /// By which share of its way to the light a receiver may be set back for the depths of a ground of such a half side. OpenGL
 /// clips depths to -1..1: the ground's err by `s`, u of the half side over the near plane, relative to themselves, and receivers
 /// allow for as much. A small caster is then told from a receiver that is farther by 1 + s.
-fn nearer(lamp: &Lamp, ground: f64) -> f64 {
+pub fn nearer(lamp: &Lamp, ground: f64) -> f64 {
     if gpu().adapter.backend != wgpu::Backend::Gl {
         return 0.0;
     }

@@ -1,0 +1,148 @@
+//! Tests random scenes as people build them under lamps: a shade of panels or of one mesh close to the
+//! light, an endless range, grounds of any size, with thickness, and feet that are sunk into them. All
+//! settings are the defaults, and receivers are compared with rays.
+//!
+//! The long run is `PROPTEST_CASES=10000 cargo test --test suite hard_cases::fuzz_untidy_lamps`.
+
+use std::cell::RefCell;
+
+use glam::{DVec3, Vec3};
+use proptest::prelude::*;
+
+use super::endless_lamps::nearer;
+use super::fuzz_values::run;
+use super::stage::scene;
+use super::table;
+use crate::support::camera::Camera;
+use crate::support::gpu::gpu;
+use crate::support::lamp_scenes::{Lamp, Setting, merged, shade};
+use crate::support::rounding::U;
+use crate::support::scene::Mesh;
+
+/// Describes a scene of some boxes on a ground, under a lamp in a shade that is open below.
+#[derive(Clone, Debug)]
+struct Lit {
+    /// Is half the side of the ground, from 1 to 1e5.
+    half: f32,
+    /// Is the thickness of the ground; 0 for a sheet.
+    thickness: f32,
+    /// Holds the least corner and the size of each box. Some boxes are sunk into the ground.
+    boxes: Vec<(Vec3, Vec3)>,
+    light: DVec3,
+    /// Is half the side of the shade.
+    shade: f64,
+    /// States that the shade is one mesh, whose bounds contain the light.
+    one_mesh: bool,
+    eye: DVec3,
+}
+
+fn lit() -> impl Strategy<Value = Lit> {
+    let half = (0.0..5.0_f64).prop_map(|exponent| 10_f64.powf(exponent) as f32);
+    let thickness = prop_oneof![Just(0.0_f32), 0.001..5.0_f32];
+    let corner = (
+        -1.5..1.0_f32,
+        prop_oneof![Just(0.0_f32), -0.05..0.0_f32],
+        -1.5..1.0_f32,
+    );
+    let size = (0.05..0.8_f32, 0.2..1.5_f32, 0.05..0.8_f32);
+    let boxes = prop::collection::vec((corner, size), 1..4).prop_map(|boxes| {
+        let boxes = boxes.into_iter();
+        boxes
+            .map(|(corner, size)| (Vec3::from(corner), Vec3::from(size)))
+            .collect()
+    });
+    let light = (-1.0..1.0, 2.0..4.0, -1.0..1.0).prop_map(DVec3::from);
+    let eye = (2.0..5.0, 0.8..4.0, 0.0..std::f64::consts::TAU).prop_map(
+        |(away, height, side): (f64, f64, f64)| {
+            DVec3::new(away * side.cos(), height, away * side.sin())
+        },
+    );
+    let shade = (0.03..0.3, any::<bool>());
+    (half, thickness, boxes, light, shade, eye).prop_map(
+        |(half, thickness, boxes, light, (shade, one_mesh), eye)| Lit {
+            half,
+            thickness,
+            boxes,
+            light,
+            shade,
+            one_mesh,
+            eye,
+        },
+    )
+}
+
+impl Lit {
+    fn setting(&self) -> Setting {
+        let boxes = self.boxes.iter();
+        let mut meshes: Vec<_> = boxes
+            .map(|(corner, size)| Mesh::cuboid(*corner, *corner + *size))
+            .collect();
+        meshes.push(if self.thickness == 0.0 {
+            Mesh::floor(0.0, self.half)
+        } else {
+            let corner = Vec3::new(self.half, 0.0, self.half);
+            Mesh::cuboid(-corner - Vec3::Y * self.thickness, corner)
+        });
+        let shade = shade(self.light, self.shade);
+        if self.one_mesh {
+            meshes.push(merged(&shade));
+        } else {
+            meshes.extend(shade);
+        }
+        Setting {
+            name: "a random scene",
+            meshes,
+            light: self.light,
+            camera: Camera::modern(self.eye, DVec3::new(0.0, 0.3, 0.0), 0.9, 1.6),
+        }
+    }
+}
+
+/// Counts settled receivers, dark and lit, and those of each that are wrong.
+#[derive(Clone, Copy, Debug, Default)]
+struct Counts {
+    settled: [usize; 2],
+    wrong: [usize; 2],
+}
+
+#[test]
+fn untidy_scenes_under_lamps_are_shadowed_as_the_truth_says() {
+    let all = RefCell::new(Counts::default());
+    let lamps = RefCell::new([Lamp::omni(), Lamp::spot()]);
+    run(60, lit(), |lit| {
+        let setting = lit.setting();
+        let scene = scene(&setting.meshes);
+        let half = f64::from(lit.half);
+        for lamp in lamps.borrow_mut().iter_mut() {
+            // The lamp before may have seen another scene.
+            lamp.reset_history();
+            let camera = Some(&setting.camera);
+            lamp.record(setting.light, f32::INFINITY, camera, &scene.list(), &[]);
+            // The corners of a ground of two triangles are rounded by 2u of its half side, and what
+            // it is compared with is set back by as much.
+            let rounding = (4.0 * U * half, nearer(lamp, half));
+            let truth = lamp.truth_of_pixels(&setting, &scene, rounding, (48, 30));
+            let seen = lamp.ask().points(gpu(), &truth.points);
+            let wrong = truth.leaks_and_false_shadows(&seen);
+            let mut all = all.borrow_mut();
+            for (kind, count) in truth.counts().into_iter().enumerate() {
+                all.settled[kind] += count;
+                all.wrong[kind] += wrong[kind];
+            }
+            prop_assert_eq!(wrong, [0, 0], "{}: {:?}", lamp.name(), truth.counts());
+        }
+        Ok(())
+    });
+    let Counts { settled, wrong } = all.into_inner();
+    assert!(settled.iter().all(|count| *count > 2000), "{settled:?}");
+    table::record(
+        "random scenes under lamps in shades of half side 0.03 to 0.3, endless range, grounds of half side 1 to 1e5, sheets and slabs, sunk feet, everything default",
+        "settled receivers in view as the truth says, where it holds 4u of the half side above them",
+        format!(
+            "{} wrong of {} settled receivers, {} of them dark",
+            wrong[0] + wrong[1],
+            settled[0] + settled[1],
+            settled[0]
+        ),
+    );
+}
