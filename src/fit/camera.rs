@@ -30,6 +30,12 @@ pub struct CameraView {
     /// default of [`CameraView::new`]) covers all that the projection and the receivers' bounds
     /// make visible. Too large a value costs resolution; too small a value ends the shadows in
     /// plain sight.
+    ///
+    /// A directional light's shadows end at this depth, on a plane across the view. Several cameras
+    /// share the farthest of their planes if all of them have a distance and look the same way to
+    /// within 20 degrees, as the eyes of a headset do; otherwise shadows end where the maps end.
+    /// Shadows of spot and point lights end at the light's range instead; beyond this distance
+    /// nothing is fitted to, so that they may be missing there.
     pub max_distance: f32,
 }
 

@@ -50,7 +50,7 @@ pub struct DirectionalShadowDescriptor<'a> {
     pub blend: f32,
     /// Is the fraction of [`CameraView::max_distance`](crate::CameraView::max_distance), in 0..=1,
     /// over which shadows fade to light before they end there. The default is 0: they end at once.
-    /// Without a distance it has no effect.
+    /// Where no such end is common to all cameras it has no effect.
     pub fade: f32,
     /// Selects what may change the extent of a cascade. The default is [`Stability::TightFit`].
     pub stability: Stability,
