@@ -24,7 +24,7 @@ pub struct ShadowView {
     pub(super) placement: ViewPlacement,
     /// Is the largest f32 render coordinate, in world units, whose rounding all positions inside
     /// the view may have. For a local light it is the light's own, since the rounding of what it
-    /// shines on grows with the distance from it; and half of `caster_reach` more.
+    /// shines on grows with the distance from it; and `caster_reach` more.
     pub(super) render_reach: f64,
     /// Is the largest world distance, along an axis, of a corner of a drawn caster from a local
     /// light; 0 for a directional one. A large triangle is displaced everywhere by what its corners
@@ -360,10 +360,10 @@ impl ShadowView {
 }
 
 /// Returns the render coordinate whose rounding all positions inside a local light's view may have,
-/// however close to the light. It is the light's own, and half of the distance of the farthest
-/// corner of a caster: a triangle is displaced, at its middle as well, by what its corners are
-/// rounded by, in the vertex stage and where it is clipped at the sides of the map. Half, since
-/// `4u` serves the roundings of caster and receiver, and receivers have no far corners.
+/// however close to the light. It is the light's own, and the distance of the farthest corner of a
+/// caster: a triangle is displaced, at its middle as well, by what its corners are rounded by. That
+/// comes to `2u` of their distance in the vertex stage, which adds two products of that size, and to
+/// as much where the triangle is clipped at the sides of the map.
 fn local_render_reach(anchor_render: Vec3, caster_reach: f64) -> f64 {
-    f64::from(anchor_render.abs().max_element()) + 0.5 * caster_reach
+    f64::from(anchor_render.abs().max_element()) + caster_reach
 }

@@ -235,6 +235,17 @@ impl Lamp {
         .expect("a frame")
     }
 
+    /// Returns how far aside the footprint of a lookup reaches, as a tangent seen from the light: the
+    /// reach of the default filter, half a texel of stairs and the residual offset, toward a map's
+    /// corner along both axes at once.
+    pub fn footprint_tangent(&self) -> f64 {
+        let half_side = match self {
+            Self::Spot(_) => CONE.tan(),
+            Self::Omni(_) | Self::Pool(..) => 1.0,
+        };
+        3.5 * 2.0_f64.sqrt() * 1.05 * 2.0 * half_side / f64::from(MAP_SIZE)
+    }
+
     /// Discards what the light keeps of earlier frames.
     pub fn reset_history(&mut self) {
         match self {
@@ -276,10 +287,6 @@ impl Lamp {
     ) -> Settled {
         let is_spot = matches!(self, Self::Spot(_));
         let light = setting.light;
-        let half_side = if is_spot { CONE.tan() } else { 1.0 };
-        // Reach of the default filter, half a texel of stairs and the residual offset, toward a map's corner along both axes
-        // at once.
-        let tangent = 3.5 * 2.0_f64.sqrt() * 1.05 * 2.0 * half_side / f64::from(MAP_SIZE);
         let in_cone = |position: DVec3| {
             !is_spot || (position - light).angle_between(DVec3::NEG_Y) < CONE - 0.02
         };
@@ -289,7 +296,7 @@ impl Lamp {
             pixels,
             &Lookup {
                 light,
-                tangent,
+                tangent: self.footprint_tangent(),
                 lift,
                 nearer,
             },

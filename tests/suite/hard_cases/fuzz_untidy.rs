@@ -43,7 +43,7 @@ struct Untidy {
 struct Coarseness {
     /// Is the size of a texel.
     texel: f64,
-    /// Is the distance toward the light within which an occluder may have no shadow.
+    /// Is the height within which an occluder may have no shadow.
     gap: f64,
 }
 
@@ -159,11 +159,11 @@ impl Untidy {
                 slice.is_some_and(|slice| f64::from(slice.depth_far) >= depth)
             };
             let view = report.views.iter().find(ends_behind)?;
-            // Depths are rounded to three texels, for the caster and once more for the receiver.
-            let texel = f64::from(view.texel_size_world.max_element());
+            // Behind bounds of such a size any ground counts as casting, whose own rounding the
+            // reported height contains, beside that of the depths.
             Some(Coarseness {
-                texel,
-                gap: 6.0 * texel,
+                texel: f64::from(view.texel_size_world.max_element()),
+                gap: f64::from(view.max_peter_panning_world),
             })
         };
 
@@ -193,7 +193,7 @@ impl Untidy {
                 let angle = f64::from(step) * std::f64::consts::TAU / 12.0;
                 position + DVec3::new(angle.cos(), 0.0, angle.sin()) * margin
             });
-            let mut around = around.flat_map(|place| [place, place - light.normalize() * gap]);
+            let mut around = around.flat_map(|place| [place, place + DVec3::Y * gap]);
             let settled = around.all(|place| dark(place) == here);
             points.push(Point::rounded(position, DVec3::Y));
             truths.push(settled.then_some(here));
