@@ -162,13 +162,13 @@
 //! The last call ends the shadows of a directional light. Without it [`CameraView::max_distance`]
 //! and [`DirectionalShadowDescriptor::fade`] have no effect: shadows then end where the maps end,
 //! raggedly and in places far beyond the distance. A spot or point light with a `fade` calls
-//! `shadow_limited_by_distance(view, position, visibility)` in its place; one without a `fade` needs
-//! neither, because `receiver.inside` is false beyond its range.
+//! `shadow_limited_by_distance(view, position, visibility)` in its place; one without a `fade`
+//! needs neither, because `receiver.inside` is false beyond its range.
 //!
 //! `examples/own_layout.rs` in the repository does this for a sun and a point light.
-//! [`ShadowViewUniform`] is the Rust side of the uniforms. The function of [`Filter::Hardware`] takes
-//! a `sampler_comparison` instead, which is linear and compares by `GreaterEqual`. The [`shader`]
-//! module tells what changes on devices that cannot gather.
+//! [`ShadowViewUniform`] is the Rust side of the uniforms. The function of [`Filter::Hardware`]
+//! takes a `sampler_comparison` instead, which is linear and compares by `GreaterEqual`. The
+//! [`shader`] module tells what changes on devices that cannot gather.
 //!
 //! # Cameras relative to an origin
 //!

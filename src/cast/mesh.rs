@@ -147,10 +147,10 @@ impl MeshCaster {
     }
 
     /// Replaces the geometry, for an engine whose buffer has grown or that draws another range of
-    /// it: `vertices` and `indices` as in [`MeshCasterDescriptor`], and the bounds of what they draw
-    /// in model space. Maps that show the old geometry are drawn again. The shape
-    /// ([`set_shape`](Self::set_shape)) stays; set it anew if it does not hold for the new geometry,
-    /// which otherwise loses shadows on itself.
+    /// it: `vertices` and `indices` as in [`MeshCasterDescriptor`], and the bounds of what they
+    /// draw in model space. Maps that show the old geometry are drawn again. The shape
+    /// ([`set_shape`](Self::set_shape)) stays; set it anew if it does not hold for the new
+    /// geometry, which otherwise loses shadows on itself.
     ///
     /// Passes that were recorded before draw the old buffers, whenever they are submitted.
     ///

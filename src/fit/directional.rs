@@ -17,8 +17,8 @@ use crate::fit::visible::{SeenBounds, SeenLists};
 use crate::{Aabb, ShadowError};
 
 /// Is the cosine of the largest angle, about a degree, by which a light may turn from one frame to
-/// the next and keep the history of its extents. A sun that follows the time of day turns by less in
-/// a frame, even where a day takes twenty seconds; a change of scene turns it by more.
+/// the next and keep the history of its extents. A sun that follows the time of day turns by less
+/// in a frame, even where a day takes twenty seconds; a change of scene turns it by more.
 const TURN_COSINE: f64 = 0.999_85;
 
 /// Holds the light-space bounds of a light's cascades, kept from frame to frame for their

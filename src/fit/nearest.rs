@@ -16,8 +16,8 @@ use glam::DVec3;
 
 use crate::Aabb;
 
-/// Is the share of the light's reach, and of half the largest side of a caster's box, below which no
-/// surface needs to be resolved. With a near plane at this share of the reach, the interpolation
+/// Is the share of the light's reach, and of half the largest side of a caster's box, below which
+/// no surface needs to be resolved. With a near plane at this share of the reach, the interpolation
 /// errs by 2⁻¹³ of the distance at the end of the reach, which is a sixteenth of a texel in a map
 /// of 1024.
 const RESOLVED_SHARE: f64 = 1.0 / 1024.0;
@@ -28,8 +28,8 @@ const RESOLVED_SHARE: f64 = 1.0 / 1024.0;
 const ENCLOSING_SHARE: f64 = 1.0 / 16.0;
 
 /// Is the contact, in texels, that may be lost at the end of the reach for the sake of a large mesh
-/// whose box contains the light. Nearer to the light the loss shrinks in proportion to the distance.
-/// The kernel of a filter costs several texels of contact everywhere.
+/// whose box contains the light. Nearer to the light the loss shrinks in proportion to the
+/// distance. The kernel of a filter costs several texels of contact everywhere.
 const CONTACT_TEXELS: f64 = 0.5;
 
 /// Is the least distance of a near plane as a share of the light's reach. With a nearer one the

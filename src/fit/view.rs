@@ -362,8 +362,8 @@ impl ShadowView {
 /// Returns the render coordinate whose rounding all positions inside a local light's view may have,
 /// however close to the light. It is the light's own, and the distance of the farthest corner of a
 /// caster: a triangle is displaced, at its middle as well, by what its corners are rounded by. That
-/// comes to `2u` of their distance in the vertex stage, which adds two products of that size, and to
-/// as much where the triangle is clipped at the sides of the map.
+/// comes to `2u` of their distance in the vertex stage, which adds two products of that size, and
+/// to as much where the triangle is clipped at the sides of the map.
 fn local_render_reach(anchor_render: Vec3, caster_reach: f64) -> f64 {
     f64::from(anchor_render.abs().max_element()) + caster_reach
 }

@@ -203,8 +203,8 @@ impl SeenLists {
     }
 }
 
-/// Returns the light-space box of what the camera at `index` sees between two depths; it is empty if
-/// that is nothing.
+/// Returns the light-space box of what the camera at `index` sees between two depths; it is empty
+/// if that is nothing.
 pub(crate) fn light_box_between(
     (index, camera): (usize, &CameraFrustum),
     seen: &[Seen],

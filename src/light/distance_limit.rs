@@ -5,13 +5,14 @@ use glam::DVec2;
 use crate::fit::{CameraFrustum, FitInput, LightSpaceBounds, Region};
 use crate::receive::{ALL_TEXELS, NO_LIMIT};
 
-/// Is the least fraction of the distance over which shadows fade. It makes a sharp end. The weight is
-/// a difference of numbers of the size of its reciprocal, whose rounding comes to four ulps, or half
-/// a hundredth.
+/// Is the least fraction of the distance over which shadows fade. It makes a sharp end. The weight
+/// is a difference of numbers of the size of its reciprocal, whose rounding comes to four ulps, or
+/// half a hundredth.
 const LEAST_FADE: f64 = 1e-4;
 
 /// Is the cosine of the largest angle, 20 degrees, between cameras that count as looking the same
-/// way: the two eyes of a headset do, even where its displays are turned outward by ten degrees each.
+/// way: the two eyes of a headset do, even where its displays are turned outward by ten degrees
+/// each.
 const SAME_WAY_COSINE: f64 = 0.939_692_620_785_908_4;
 
 /// Returns the uniform's plane at which shadows end. It is at the farthest end of all cameras if

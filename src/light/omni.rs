@@ -49,10 +49,11 @@ pub struct OmniLight {
     /// Is the absolute world position (f64), finite. It may lie anywhere, even on a surface or on a
     /// vertex. The near plane of each face is at the bounds of the nearest caster, but no nearer
     /// than 1/1024 of half their largest side. Where bounds contain the light, as those of a lamp
-    /// shade, of a room or of a whole scene do, it is at 1/16 of half their smallest side, or at the
-    /// distance that costs half a texel of contact at the farthest receiver that is seen (1/8192 of
-    /// that receiver's distance in maps of 1024 texels), whichever is farther. No limit is more than
-    /// 1/1024 of the distance to that receiver. What lies before the near plane casts nothing.
+    /// shade, of a room or of a whole scene do, it is at 1/16 of half their smallest side, or at
+    /// the distance that costs half a texel of contact at the farthest receiver that is seen
+    /// (1/8192 of that receiver's distance in maps of 1024 texels), whichever is farther. No limit
+    /// is more than 1/1024 of the distance to that receiver. What lies before the near plane casts
+    /// nothing.
     pub position_world: DVec3,
     /// Is the distance in world units beyond which the light neither draws casters nor shadows
     /// receivers: above 0, infinity allowed. Beyond it visibility is 1, and the engine's

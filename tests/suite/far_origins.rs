@@ -221,8 +221,8 @@ fn scan(case: &Case, scene: &Scene, casters: &[MeshCaster]) -> usize {
         let report = match record {
             Ok(report) => report,
             Err(ShadowError::ViewNotRepresentable { .. }) => {
-                // A frame is refused where four steps exceed a texel of its extent. Margins and size
-                // steps make texels coarser than that, by a factor below eight.
+                // A frame is refused where four steps exceed a texel of its extent. Margins and
+                // size steps make texels coarser than that, by a factor below eight.
                 let least_of_64 = (f64::from(case.map_size) / 64.0).min(1.0);
                 let (finest, _) = at_zero;
                 assert!(spacing * 32.0 > finest * least_of_64, "{what} is refused");
@@ -276,8 +276,8 @@ fn suns_of_any_origin_are_right_or_refused() {
 }
 
 /// Checks that a frame is taken up to where four steps of f64 are as large as a texel of the extent
-/// that the error states, `2⁵⁰ extent / size`, and is refused beyond, as `ShadowFrameDescriptor::origin`
-/// and `ShadowError::ViewNotRepresentable` say.
+/// that the error states, `2⁵⁰ extent / size`, and is refused beyond, as
+/// `ShadowFrameDescriptor::origin` and `ShadowError::ViewNotRepresentable` say.
 #[test]
 fn frames_are_taken_as_far_as_the_docs_say() {
     let gpu = gpu();

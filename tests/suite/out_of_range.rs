@@ -20,8 +20,8 @@ use crate::support::view_member::member;
 const LIGHT: Vec3 = Vec3::new(0.3, -1.0, 0.2);
 const MAP_SIZE: u32 = 128;
 
-/// Holds a box of floor, in a camera's view, under a roof that extends far beyond the map on all sides:
-/// every position that the map covers is dark.
+/// Holds a box of floor, in a camera's view, under a roof that extends far beyond the map on all
+/// sides: every position that the map covers is dark.
 struct Hall {
     shadow: DirectionalShadow,
     probe: SunProbe,

@@ -235,9 +235,9 @@ impl Lamp {
         .expect("a frame")
     }
 
-    /// Returns how far aside the footprint of a lookup reaches, as a tangent seen from the light: the
-    /// reach of the default filter, half a texel of stairs and the residual offset, toward a map's
-    /// corner along both axes at once.
+    /// Returns how far aside the footprint of a lookup reaches, as a tangent seen from the light:
+    /// the reach of the default filter, half a texel of stairs and the residual offset, toward a
+    /// map's corner along both axes at once.
     pub fn footprint_tangent(&self) -> f64 {
         let half_side = match self {
             Self::Spot(_) => CONE.tan(),

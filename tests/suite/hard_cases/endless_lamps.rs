@@ -16,8 +16,9 @@ use crate::support::view_member::member;
 /// Half sides of the grounds.
 const GROUNDS: [f32; 6] = [5.0, 50.0, 200.0, 1e3, 1e4, 1e5];
 
-/// Returns by how much what lies before a ground of such a half side must rise above it: the ground's
-/// depths are displaced by up to 4u of the half side, and receivers are set back by as much.
+/// Returns by how much what lies before a ground of such a half side must rise above it: the
+/// ground's depths are displaced by up to 4u of the half side, and receivers are set back by as
+/// much.
 pub fn lift(ground: f64) -> f64 {
     8.0 * U * ground
 }

@@ -1,6 +1,6 @@
-//! Tests random scenes as people build them: grounds of any size that cast, with thickness, feet that
-//! are sunk into them, domes, and one object with broken or far too large bounds. All settings are the
-//! defaults, and receivers are compared with rays.
+//! Tests random scenes as people build them: grounds of any size that cast, with thickness, feet
+//! that are sunk into them, domes, and one object with broken or far too large bounds. All settings
+//! are the defaults, and receivers are compared with rays.
 //!
 //! The long run is `PROPTEST_CASES=10000 cargo test --test suite hard_cases::fuzz_untidy`.
 
@@ -146,8 +146,8 @@ impl Untidy {
         let report = sun.record(DVec3::ZERO, shining(self.light), coverage, &list, &[]);
         let coarseness = |position: DVec3| {
             if cascades == 1 {
-                // The boxes extend over three metres and their shadows over twelve metres at most, so
-                // that a map of 2048 texels has texels of 7 mm.
+                // The boxes extend over three metres and their shadows over twelve metres at most,
+                // so that a map of 2048 texels has texels of 7 mm.
                 return Some(Coarseness {
                     texel: 0.007,
                     gap: 0.0,

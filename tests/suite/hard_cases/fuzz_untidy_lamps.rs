@@ -1,6 +1,6 @@
-//! Tests random scenes as people build them under lamps: a shade of panels or of one mesh close to the
-//! light, an endless range, grounds of any size, with thickness, and feet that are sunk into them. All
-//! settings are the defaults, and receivers are compared with rays.
+//! Tests random scenes as people build them under lamps: a shade of panels or of one mesh close to
+//! the light, an endless range, grounds of any size, with thickness, and feet that are sunk into
+//! them. All settings are the defaults, and receivers are compared with rays.
 //!
 //! The long run is `PROPTEST_CASES=10000 cargo test --test suite hard_cases::fuzz_untidy_lamps`.
 
@@ -98,8 +98,8 @@ impl Lit {
     }
 }
 
-/// Returns whether an edge of a shadow crosses the footprint of a lookup, as [`Lamp::truth`] has it, by
-/// many more rays than decide there: a corner may lie between those.
+/// Returns whether an edge of a shadow crosses the footprint of a lookup, as [`Lamp::truth`] has
+/// it, by many more rays than decide there: a corner may lie between those.
 fn has_edge_near(scene: &Scene, light: DVec3, point: &Point, tangent: f64) -> bool {
     let hidden = |from: DVec3| {
         let hits = scene.triangles.iter();
@@ -188,8 +188,9 @@ fn untidy_scenes_under_lamps_are_shadowed_as_the_truth_says() {
     );
 }
 
-/// Checks a ground of two triangles that a cube face sees in a strip along its lower side, where they
-/// are clipped at the sides of the map: 2u of the distance of their corners did not cover the rounding.
+/// Checks a ground of two triangles that a cube face sees in a strip along its lower side, where
+/// they are clipped at the sides of the map: 2u of the distance of their corners did not cover the
+/// rounding.
 #[test]
 fn a_strip_of_a_giant_ground_is_lit() {
     let scene = Lit {
