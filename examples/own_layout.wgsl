@@ -11,7 +11,9 @@ fn sunlight(position: vec3<f32>, normal: vec3<f32>) -> f32 {
     if !receiver.inside {
         return 1.0;
     }
-    return shadow_filter_tent3(sun_depths, depth_sampler, receiver);
+    // Ends the shadows at the camera's distance limit, and fades them before it.
+    let visibility = shadow_filter_tent3(sun_depths, depth_sampler, receiver);
+    return shadow_limited_by_depth(sun_view, position, visibility);
 }
 
 fn lamplight(position: vec3<f32>, normal: vec3<f32>) -> f32 {
@@ -20,5 +22,6 @@ fn lamplight(position: vec3<f32>, normal: vec3<f32>) -> f32 {
     if !receiver.inside {
         return 1.0;
     }
+    // Of a lamp with a `fade`, `shadow_limited_by_distance` would be called here.
     return shadow_filter_tent3(lamp_depths, depth_sampler, receiver);
 }

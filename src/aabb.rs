@@ -4,10 +4,12 @@ use glam::{DVec3, Mat4, Vec3};
 
 /// Holds an axis-aligned bounding box in render space (f32, in the engine's unit).
 ///
-/// A box with `min > max` on any axis is *empty*: it contains nothing, and fitting and culling ignore it. A box with a
-/// NaN is *broken*. A caster or receiver whose box has a NaN or, without being empty, an infinite corner is left out of
-/// the frame and named by [`ShadowFrame::broken_bounds`](crate::ShadowFrame::broken_bounds). Where a box is too small,
-/// shadows of the geometry outside it are missing; a box that is too large only costs resolution and draws.
+/// A box with `min > max` on any axis is *empty*: it contains nothing, and fitting and culling
+/// ignore it. A box with a NaN is *broken*. A caster or receiver whose box has a NaN or, without
+/// being empty, an infinite corner is left out of the frame and named by
+/// [`ShadowFrame::broken_bounds`](crate::ShadowFrame::broken_bounds). Where a box is too small,
+/// shadows of the geometry outside it are missing; a box that is too large only costs resolution
+/// and draws.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
     /// Is the least corner, in render space.
@@ -34,8 +36,8 @@ impl Aabb {
         max: Vec3::NAN,
     };
 
-    /// Returns the smallest box that contains all `points`: [`Aabb::EMPTY`] if there are none, and a broken box if a
-    /// coordinate is NaN.
+    /// Returns the smallest box that contains all `points`: [`Aabb::EMPTY`] if there are none, and
+    /// a broken box if a coordinate is NaN.
     pub fn from_points(points: impl IntoIterator<Item = Vec3>) -> Self {
         points.into_iter().fold(Self::EMPTY, |bounds, point| {
             bounds.union(Self::new(point, point))
@@ -44,7 +46,8 @@ impl Aabb {
 
     /// Returns the smallest box that contains both boxes, or a broken box if either is broken.
     pub fn union(self, other: Self) -> Self {
-        // `min` and `max` of a number and a NaN return the number or the NaN, depending on the order.
+        // `min` and `max` of a number and a NaN return the number or the NaN, depending on the
+        // order.
         if self.is_nan() || other.is_nan() {
             return Self::BROKEN;
         }
@@ -54,9 +57,10 @@ impl Aabb {
         }
     }
 
-    /// Returns the bounds of the eight transformed corners, which contain the transformed geometry for every affine
-    /// `target_from_source`. An empty box stays empty. An infinite box stays infinite, on all axes. The result is
-    /// broken if this box is broken or the matrix makes a corner NaN.
+    /// Returns the bounds of the eight transformed corners, which contain the transformed geometry
+    /// for every affine `target_from_source`. An empty box stays empty. An infinite box stays
+    /// infinite, on all axes. The result is broken if this box is broken or the matrix makes a
+    /// corner NaN.
     pub fn transformed(self, target_from_source: &Mat4) -> Self {
         if self.is_empty() {
             return Self::EMPTY;
@@ -69,8 +73,8 @@ impl Aabb {
         )
     }
 
-    /// Returns whether `min > max` on some axis and no coordinate is NaN. A broken box is not empty;
-    /// [`Aabb::is_finite`] returns false for it.
+    /// Returns whether `min > max` on some axis and no coordinate is NaN. A broken box is not
+    /// empty; [`Aabb::is_finite`] returns false for it.
     pub fn is_empty(&self) -> bool {
         self.min.cmpgt(self.max).any() && !self.is_nan()
     }
@@ -84,7 +88,8 @@ impl Aabb {
         self.min.is_nan() || self.max.is_nan()
     }
 
-    /// Returns the smallest box of f32 corners that holds the box of f64 corners from `min` to `max`.
+    /// Returns the smallest box of f32 corners that holds the box of f64 corners from `min` to
+    /// `max`.
     pub(crate) fn around(min: DVec3, max: DVec3) -> Self {
         let down = |value: f64| {
             let rounded = value as f32;
@@ -108,7 +113,8 @@ impl Aabb {
         }
     }
 
-    /// Returns corner `index` in `0..8`: bit 0 selects x, bit 1 y and bit 2 z, and a set bit selects `max`.
+    /// Returns corner `index` in `0..8`: bit 0 selects x, bit 1 y and bit 2 z, and a set bit
+    /// selects `max`.
     pub(crate) fn corner(&self, index: usize) -> Vec3 {
         let pick = |axis: usize| {
             if index >> axis & 1 == 1 {

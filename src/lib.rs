@@ -151,16 +151,24 @@
 //!         if !receiver.inside {
 //!             return 1.0;
 //!         }
-//!         return shadow_filter_tent3(sun_map, map_sampler, receiver);
+//!         let visibility = shadow_filter_tent3(sun_map, map_sampler, receiver);
+//!         return shadow_limited_by_depth(sun_views[0], position, visibility);
 //!     }";
 //! # naga::front::wgsl::parse_str(&(wgsl.clone() + engine)).expect("valid WGSL");
 //! let shader = wgsl + engine;
 //! # Ok::<(), wgpu_shadows::error::BindingsError>(())
 //! ```
 //!
-//! `examples/own_layout.rs` in the repository does this for a sun and a point light. [`ShadowViewUniform`] is the Rust side of the
-//! uniforms. The function of [`Filter::Hardware`] takes a `sampler_comparison` instead, which is linear and compares by
-//! `GreaterEqual`. The [`shader`] module tells what changes on devices that cannot gather.
+//! The last call ends the shadows of a directional light. Without it [`CameraView::max_distance`]
+//! and [`DirectionalShadowDescriptor::fade`] have no effect: shadows then end where the maps end,
+//! raggedly and in places far beyond the distance. A spot or point light with a `fade` calls
+//! `shadow_limited_by_distance(view, position, visibility)` in its place; one without a `fade`
+//! needs neither, because `receiver.inside` is false beyond its range.
+//!
+//! `examples/own_layout.rs` in the repository does this for a sun and a point light.
+//! [`ShadowViewUniform`] is the Rust side of the uniforms. The function of [`Filter::Hardware`]
+//! takes a `sampler_comparison` instead, which is linear and compares by `GreaterEqual`. The
+//! [`shader`] module tells what changes on devices that cannot gather.
 //!
 //! # Cameras relative to an origin
 //!
@@ -189,9 +197,10 @@
 //! - of [`ShadowBindings::wgsl`]: `shadow_NAME`, `shadow_view_NAME`, `shadow_map_NAME` and `shadow_views_NAME` for each light, and
 //!   `shadow_geometric_normal`;
 //! - of [`shader::MODULES`]: the names of the modules `view`, `cube_face`, `normal`, `texels_by_samples`, `bias_*`, and `filter_*`
-//!   except `filter_direction`; of their functions `shadow_view_holds`, `shadow_cube_face`, `shadow_geometric_normal`, and
-//!   `shadow_receiver_NAME_directional` and `shadow_receiver_NAME_local` of a module `bias_NAME`, and `shadow_filter_NAME` of a module
-//!   `filter_NAME`; and of their structs
+//!   except `filter_direction`; of their functions `shadow_view_holds`, `shadow_limited_by_depth`,
+//!   `shadow_limited_by_distance`, `shadow_cube_face`, `shadow_geometric_normal`,
+//!   `shadow_receiver_NAME_directional` and `shadow_receiver_NAME_local` of a module `bias_NAME`, and
+//!   `shadow_filter_NAME` of a module `filter_NAME`; and of their structs
 //!   `ShadowReceiver` with the member `inside` and `ShadowViewUniform` with the member `anchor`;
 //! - in the text of a [`caster::CasterVertex::Wgsl`]: `shadow_caster_clip`.
 //!

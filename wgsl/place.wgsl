@@ -20,7 +20,7 @@
 struct ShadowPlace {
     // Is the position relative to the anchor along the axes of light space, in world units.
     light: vec3<f32>,
-    // Is the position in texels from the middle of the map.
+    // Is the position in texels from the middle.
     texel_from_middle: vec2<f32>,
     // Is the ndc depth.
     depth: f32,
@@ -105,7 +105,7 @@ fn shadow_blend_weight(view: ShadowViewUniform, place: ShadowPlace) -> f32 {
     return clamp(min(from_border.x, from_border.y) * view.blend_scale, 1.0 / 4096.0, 1.0);
 }
 
-// Returns the receiver of a bias: `texel_from_middle` in texels from the middle of the map, `depth` in ndc with the
+// Returns the receiver of a bias: `texel_from_middle` in texels from the middle, `depth` in ndc with the
 // bias included.
 fn shadow_receiver(
     view: ShadowViewUniform,

@@ -10,7 +10,7 @@
 // space for a directional light, and tangents of angles for a local one. Shaders choose among the mappings of a light
 // by an index that varies, so it holds no more than they need then.
 struct ShadowMapping {
-    // texel = plane * texel_scale + texel_offset, counted from the middle of the map. The offset is 1e30 where nothing
+    // texel = plane * texel_scale + texel_offset, counted from the middle. The offset is 1e30 where nothing
     // casts into the view, which then covers no position.
     texel_scale: vec2<f32>,
     texel_offset: vec2<f32>,
@@ -41,10 +41,10 @@ struct ShadowViewUniform {
     // Is the position of the first texel in a grid that is fixed in the world, modulo 65536: x in the low 16 bits, y in
     // the high 16 bits.
     grid: u32,
-    // Is the distance from the middle of the map, in texels along x and y, within which a lookup stays inside the map,
-    // with kernel and bias included.
+    // Is the distance from the middle, in texels along x and y, within which a lookup stays inside the map, with kernel
+    // and bias included, and positions have shadows.
     inner: vec2<f32>,
-    // Is the middle of the map in texel coordinates.
+    // Is the middle of the part of the map in which positions have shadows, in texel coordinates.
     middle: vec2<f32>,
     // Is the number of texels per side of the map, and its reciprocal.
     map_size: f32,

@@ -13,12 +13,14 @@ pub(crate) struct CasterFacts {
     pub keeps_pass_state: bool,
 }
 
-/// Names bounds of a frame that have a NaN or an infinite corner and are not empty. The object that they bound is left
-/// out of the frame: it neither casts nor receives, and all other objects keep their shadows.
+/// Names bounds of a frame that have a NaN or an infinite corner and are not empty. The object that
+/// they bound is left out of the frame: it neither casts nor receives, and all other objects keep
+/// their shadows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct BrokenBounds {
-    /// Is the path of the list: `ShadowFrameDescriptor::casters` or `ShadowFrameDescriptor::receivers`.
+    /// Is the path of the list: `ShadowFrameDescriptor::casters` or
+    /// `ShadowFrameDescriptor::receivers`.
     pub field: &'static str,
     /// Is the index in the list.
     pub index: usize,
@@ -26,7 +28,8 @@ pub struct BrokenBounds {
     pub bounds: Aabb,
 }
 
-/// Returns the bounds if they are finite or empty. Otherwise adds them to `broken` and returns empty ones.
+/// Returns the bounds if they are finite or empty. Otherwise adds them to `broken` and returns
+/// empty ones.
 pub(crate) fn sound_bounds(
     (field, index): (&'static str, usize),
     bounds: Aabb,
@@ -43,8 +46,9 @@ pub(crate) fn sound_bounds(
     Aabb::EMPTY
 }
 
-/// Holds the casters of a frame. Each of their methods but `pipeline` and `draw` is called once a frame, and all views
-/// use the values returned, so that a caster whose values change in between cannot contradict itself.
+/// Holds the casters of a frame. Each of their methods but `pipeline` and `draw` is called once a
+/// frame, and all views use the values returned, so that a caster whose values change in between
+/// cannot contradict itself.
 #[derive(Clone, Copy)]
 pub(crate) struct FrameCasters<'a> {
     pub casters: &'a [&'a dyn ShadowCaster],
@@ -85,8 +89,9 @@ pub(crate) struct CasterAnswers {
 }
 
 impl CasterAnswers {
-    /// Calls the methods of all casters, and `receives` with the index and bounds of those that receive. `field` is the
-    /// path of the list in the caller's frame. Bounds that are neither finite nor empty are added to `broken`.
+    /// Calls the methods of all casters, and `receives` with the index and bounds of those that
+    /// receive. `field` is the path of the list in the caller's frame. Bounds that are neither
+    /// finite nor empty are added to `broken`.
     pub fn ask<'a>(
         &'a mut self,
         field: &'static str,

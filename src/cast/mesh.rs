@@ -15,9 +15,10 @@ use crate::{Aabb, ShadowView};
 
 /// Casts the shadow of a mesh with one transform.
 ///
-/// Its [`Revision`] changes when [`set_transform`](Self::set_transform) changes the transform and when
-/// [`geometry_changed`](Self::geometry_changed) is called, so that meshes that do not move keep their maps. Buffers
-/// whose contents change without such a call leave a stale shadow behind.
+/// Its [`Revision`] changes when [`set_transform`](Self::set_transform) changes the transform, when
+/// [`set_geometry`](Self::set_geometry) replaces the buffers, and when
+/// [`geometry_changed`](Self::geometry_changed) is called, so that meshes that do not move keep
+/// their maps. Buffers whose contents change without such a call leave a stale shadow behind.
 #[derive(Debug)]
 pub struct MeshCaster {
     pipeline: CasterPipeline,
@@ -41,17 +42,21 @@ impl MeshCaster {
     /// Keeps handles of the buffers; only the matrix is copied.
     ///
     /// # Errors
-    /// Returns [`CasterError`] for a matrix or bounds that are not finite, a pipeline that takes more than a mesh sets
-    /// or belongs to another device, a buffer without its usage flag or of another device, index and vertex ranges that
-    /// are empty or not within their buffer, indices of a format that does not match a strip pipeline, or a device that
-    /// is lost or out of memory.
+    /// Returns [`CasterError`] for a matrix or bounds that are not finite, a pipeline that takes
+    /// more than a mesh sets or belongs to another device, a buffer without its usage flag or of
+    /// another device, index and vertex ranges that are empty or not within their buffer, indices
+    /// of a format that does not match a strip pipeline, or a device that is lost or out of memory.
     pub fn new(
         device: &wgpu::Device,
         descriptor: &MeshCasterDescriptor<'_>,
     ) -> Result<Self, CasterError> {
         check_matrix(&descriptor.render_from_model)?;
         check_pipeline(device, descriptor.pipeline)?;
-        check_buffers(device, descriptor)?;
+        check_buffers(
+            descriptor.pipeline,
+            descriptor.vertices,
+            &descriptor.indices,
+        )?;
         let has_matrix = matches!(
             descriptor.pipeline.model_transform(),
             ModelTransform::InstanceMatrix { .. }
@@ -81,8 +86,9 @@ impl MeshCaster {
         Ok(mesh)
     }
 
-    /// Sets what is known of the surface in model space; [`caster_shape`](crate::caster::caster_shape) finds it. The
-    /// shape of a new mesh is [`CasterShape::Any`].
+    /// Sets what is known of the surface in model space;
+    /// [`caster_shape`](crate::caster::caster_shape) finds it. The shape of a new mesh is
+    /// [`CasterShape::Any`].
     pub fn set_shape(&mut self, shape_model: CasterShape) {
         self.shape_model = shape_model;
     }
@@ -94,15 +100,18 @@ impl MeshCaster {
         self.receives = receives;
     }
 
-    /// Sets the transform to render space from model space. A transform equal to the present one changes nothing.
-    /// Without an instance matrix in its pipeline the mesh is in render space already, and this call has no effect.
+    /// Sets the transform to render space from model space. A transform equal to the present one
+    /// changes nothing. Without an instance matrix in its pipeline the mesh is in render space
+    /// already, and this call has no effect.
     ///
-    /// Passes that were recorded before show the mesh where it was then, whenever they are submitted: the matrix goes
-    /// into a new buffer, and passes keep the one that they were recorded with.
+    /// Passes that were recorded before show the mesh where it was then, whenever they are
+    /// submitted: the matrix goes into a new buffer, and passes keep the one that they were
+    /// recorded with.
     ///
     /// # Errors
-    /// Returns [`CasterError::NotFinite`] for a matrix that is not finite or takes the bounds to infinity,
-    /// [`CasterError::Device`] for a device that is lost or out of memory; the mesh stays where it was.
+    /// Returns [`CasterError::NotFinite`] for a matrix that is not finite or takes the bounds to
+    /// infinity, [`CasterError::Device`] for a device that is lost or out of memory; the mesh stays
+    /// where it was.
     pub fn set_transform(&mut self, render_from_model: Mat4) -> Result<(), CasterError> {
         check_matrix(&render_from_model)?;
         if self.transform.is_none() || render_from_model == self.render_from_model {
@@ -124,12 +133,12 @@ impl MeshCaster {
         self.render_from_model
     }
 
-    /// Records that the contents of the buffers have changed and sets their new bounds in model space. Without this
-    /// call, maps that show the old geometry are kept.
+    /// Records that the contents of the buffers have changed and sets their new bounds in model
+    /// space. Without this call, maps that show the old geometry are kept.
     ///
     /// # Errors
-    /// Returns [`CasterError::NotFinite`] for bounds that are neither finite nor empty; the mesh keeps those that it
-    /// had.
+    /// Returns [`CasterError::NotFinite`] for bounds that are neither finite nor empty; the mesh
+    /// keeps those that it had.
     pub fn geometry_changed(&mut self, bounds_model: Aabb) -> Result<(), CasterError> {
         self.bounds_render = self.bounds(&bounds_model, &self.render_from_model)?;
         self.bounds_model = bounds_model;
@@ -137,7 +146,32 @@ impl MeshCaster {
         Ok(())
     }
 
-    /// Returns the bounds in render space that a mesh with `bounds_model` would have under a transform.
+    /// Replaces the geometry, for an engine whose buffer has grown or that draws another range of
+    /// it: `vertices` and `indices` as in [`MeshCasterDescriptor`], and the bounds of what they
+    /// draw in model space. Maps that show the old geometry are drawn again. The shape
+    /// ([`set_shape`](Self::set_shape)) stays; set it anew if it does not hold for the new
+    /// geometry, which otherwise loses shadows on itself.
+    ///
+    /// Passes that were recorded before draw the old buffers, whenever they are submitted.
+    ///
+    /// # Errors
+    /// Returns [`CasterError`] for bounds that are neither finite nor empty, and for buffers and
+    /// ranges that [`MeshCaster::new`] refuses; the mesh keeps those that it had.
+    pub fn set_geometry(
+        &mut self,
+        vertices: &wgpu::Buffer,
+        indices: MeshIndices,
+        bounds_model: Aabb,
+    ) -> Result<(), CasterError> {
+        check_buffers(&self.pipeline, vertices, &indices)?;
+        self.geometry_changed(bounds_model)?;
+        self.vertices = vertices.clone();
+        self.indices = indices;
+        Ok(())
+    }
+
+    /// Returns the bounds in render space that a mesh with `bounds_model` would have under a
+    /// transform.
     fn bounds(&self, bounds_model: &Aabb, render_from_model: &Mat4) -> Result<Aabb, CasterError> {
         check_bounds("MeshCasterDescriptor::bounds_model", bounds_model)?;
         if self.transform.is_none() {
@@ -151,7 +185,8 @@ impl MeshCaster {
         Ok(bounds)
     }
 
-    /// Returns a vertex buffer with one instance that holds the matrix at the offset where the pipeline reads it.
+    /// Returns a vertex buffer with one instance that holds the matrix at the offset where the
+    /// pipeline reads it.
     fn transform_buffer(&self, render_from_model: &Mat4) -> Result<wgpu::Buffer, CasterError> {
         filled_buffer(
             self.pipeline.device(),

@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::Mat4;
 
 use crate::cast::CasterPipeline;
-use crate::cast::mesh_descriptor::{MeshCasterDescriptor, MeshIndices};
+use crate::cast::mesh_descriptor::MeshIndices;
 use crate::error::CasterError;
 use crate::error::DeviceError;
 use crate::gpu::capture_device_errors;
@@ -49,19 +49,19 @@ pub(crate) fn check_pipeline(
     }
 }
 
-/// Accepts buffers of `device` that hold the ranges that are drawn.
+/// Accepts buffers of the pipeline's device that hold the ranges that are drawn.
 pub(crate) fn check_buffers(
-    device: &wgpu::Device,
-    descriptor: &MeshCasterDescriptor<'_>,
+    pipeline: &CasterPipeline,
+    vertices: &wgpu::Buffer,
+    indices: &MeshIndices,
 ) -> Result<(), CasterError> {
-    let vertices = descriptor.vertices;
     if !vertices.usage().contains(wgpu::BufferUsages::VERTEX) {
         return Err(CasterError::BufferUsage {
             field: "MeshCasterDescriptor::vertices",
             usage: "BufferUsages::VERTEX",
         });
     }
-    let drawn = match &descriptor.indices {
+    let drawn = match indices {
         MeshIndices::None { vertices } => {
             check_range("MeshCasterDescriptor::indices.vertices", vertices)?;
             vertices.end
@@ -70,7 +70,7 @@ pub(crate) fn check_buffers(
     };
     require(
         "MeshCasterDescriptor::vertices",
-        descriptor.pipeline.vertex_bytes(drawn).max(1),
+        pipeline.vertex_bytes(drawn).max(1),
         vertices.size(),
     )?;
     if let MeshIndices::Buffer {
@@ -78,12 +78,12 @@ pub(crate) fn check_buffers(
         format,
         indices,
         ..
-    } = &descriptor.indices
+    } = indices
     {
         check_range("MeshCasterDescriptor::indices.indices", indices)?;
-        check_indices(descriptor.pipeline, buffer, *format, indices)?;
+        check_indices(pipeline, buffer, *format, indices)?;
     }
-    check_owner(device, descriptor)
+    check_owner(pipeline.device(), vertices, indices)
 }
 
 fn check_indices(
@@ -111,11 +111,13 @@ fn check_indices(
     require(field, u64::from(indices.end) * index_bytes, buffer.size())
 }
 
-/// Accepts buffers of `device`. A buffer does not tell which device it belongs to; wgpu reports a mismatch when an
-/// encoder that uses the buffer is finished, so this finishes an encoder that is then thrown away.
+/// Accepts buffers of `device`. A buffer does not tell which device it belongs to; wgpu reports a
+/// mismatch when an encoder that uses the buffer is finished, so this finishes an encoder that is
+/// then thrown away.
 fn check_owner(
     device: &wgpu::Device,
-    descriptor: &MeshCasterDescriptor<'_>,
+    vertices: &wgpu::Buffer,
+    indices: &MeshIndices,
 ) -> Result<(), CasterError> {
     let check = |field, buffer, state| {
         let commands = || {
@@ -135,13 +137,12 @@ fn check_owner(
             })),
         }
     };
-    let vertices = descriptor.vertices;
     check(
         "MeshCasterDescriptor::vertices",
         vertices,
         wgpu::BufferUses::VERTEX,
     )?;
-    match &descriptor.indices {
+    match indices {
         MeshIndices::None { .. } => Ok(()),
         MeshIndices::Buffer { buffer, .. } => check(
             "MeshCasterDescriptor::indices.buffer",

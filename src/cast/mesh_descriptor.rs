@@ -19,7 +19,8 @@ pub enum MeshIndices {
     Buffer {
         /// Is the index buffer, made on the same device as the pipeline.
         buffer: wgpu::Buffer,
-        /// Is the format of the indices; for a strip pipeline it must be the pipeline's `strip_index_format`.
+        /// Is the format of the indices; for a strip pipeline it must be the pipeline's
+        /// `strip_index_format`.
         format: wgpu::IndexFormat,
         /// Is the range of indices; not empty, and within the index buffer.
         indices: Range<u32>,
@@ -28,24 +29,25 @@ pub enum MeshIndices {
     },
 }
 
-/// Describes what a [`MeshCaster`](crate::MeshCaster) is made of. [`MeshCaster::new`](crate::MeshCaster::new) checks
-/// it.
+/// Describes what a [`MeshCaster`](crate::MeshCaster) is made of.
+/// [`MeshCaster::new`](crate::MeshCaster::new) checks it.
 #[derive(Clone, Debug)]
 pub struct MeshCasterDescriptor<'a> {
     /// Is the label of the transform buffer; "shadow mesh caster" if `None`.
     pub label: wgpu::Label<'a>,
-    /// Is a pipeline made on the same device, normally with the built-in vertex stage. Where it culls and the transform
-    /// mirrors, its counterpart of the other winding is used. A pipeline with the engine's own vertex stage is accepted
-    /// if it takes no more than vertex buffer 0 and no bind group of its own.
+    /// Is a pipeline made on the same device, normally with the built-in vertex stage. Where it
+    /// culls and the transform mirrors, its counterpart of the other winding is used. A pipeline
+    /// with the engine's own vertex stage is accepted if it takes no more than vertex buffer 0 and
+    /// no bind group of its own.
     pub pipeline: &'a CasterPipeline,
     /// Holds vertices in the layout of the pipeline; created with `BufferUsages::VERTEX`.
     pub vertices: &'a wgpu::Buffer,
     /// Selects what to draw.
     pub indices: MeshIndices,
-    /// Bounds the drawn vertices in model space: finite, or empty for a mesh that casts nothing. Geometry outside its
-    /// bounds loses its shadow at times.
+    /// Bounds the drawn vertices in model space: finite, or empty for a mesh that casts nothing.
+    /// Geometry outside its bounds loses its shadow at times.
     pub bounds_model: Aabb,
-    /// Is the transform to render space from model space: affine and finite, and with entries that take the bounds to
-    /// finite ones.
+    /// Is the transform to render space from model space: affine and finite, and with entries that
+    /// take the bounds to finite ones.
     pub render_from_model: Mat4,
 }

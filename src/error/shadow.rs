@@ -7,7 +7,8 @@ use crate::error::DeviceError;
 
 /// Tells why the construction of a light, a frame, or the recording of a light failed.
 ///
-/// Whichever call returned it, an error means that nothing was recorded and that the object keeps its last good state.
+/// Whichever call returned it, an error means that nothing was recorded and that the object keeps
+/// its last good state.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ShadowError {
@@ -32,8 +33,9 @@ pub enum ShadowError {
     /// A light needs more of a resource than the limits with which the device was created allow.
     #[error("{field}: the device's {limit} must be at least {value}, and it is {maximum}")]
     OverDeviceLimit {
-        /// Is the path of the field that sets the size: lower its value, or create the device with a higher limit.
-        /// Where no field sets it (a point light always has six faces), this describes the object instead.
+        /// Is the path of the field that sets the size: lower its value, or create the device with
+        /// a higher limit. Where no field sets it (a point light always has six faces), this
+        /// describes the object instead.
         field: &'static str,
         /// Is the name of the limit in `wgpu::Limits`.
         limit: &'static str,
@@ -48,8 +50,8 @@ pub enum ShadowError {
         /// Is the path of the field.
         field: &'static str,
     },
-    /// A covered box has a corner that is NaN or infinite. A box with `min > max` on an axis is empty instead and
-    /// covers nothing, without an error.
+    /// A covered box has a corner that is NaN or infinite. A box with `min > max` on an axis is
+    /// empty instead and covers nothing, without an error.
     #[error("{field} must have finite corners, got {value}")]
     BoundsNotFinite {
         /// Is the path of the field.
@@ -67,14 +69,18 @@ pub enum ShadowError {
         /// Is the matrix, formatted.
         value: String,
     },
-    /// The fitted view cannot be represented in floating point. One cause is that its extent, or its distance from the
-    /// render origin, overflows f32.
+    /// The fitted view cannot be represented in floating point. One cause is that its extent, or
+    /// its distance from the render origin, overflows f32.
     ///
-    /// The other cause affects directional lights only: the view lies so far from the world origin that f64 does not
-    /// distinguish its texels. That is so where four steps of f64 (`2⁻⁵⁰ coordinate_world`) exceed the texel size that
-    /// `extent_world` leads to, and also exceed what f32 resolves at `distance_world`. That texel size is
-    /// `extent_world` divided by the map's texels per side, or by 64 if the map has fewer. A map of 2048 texels over
-    /// 100 units fails at 5·10¹³ units from the world origin and beyond.
+    /// The other cause affects directional lights only: the view lies so far from the world origin
+    /// that f64 does not distinguish its texels. That is so where four steps of f64 (`2⁻⁵⁰
+    /// coordinate_world`) exceed the texel size that `extent_world` leads to, and also exceed what
+    /// f32 resolves at `distance_world`. That texel size is `extent_world` divided by the map's
+    /// texels per side, or by 64 if the map has fewer. A map of 2048 texels over 100 units fails
+    /// beyond 5.5·10¹³ units from the world origin. Under a camera with
+    /// [`Stability::TightFit`](crate::Stability::TightFit) the extent is that of a cascade's slice
+    /// of the view, or of all casters and receivers together if that is less, and not of the part
+    /// that the map is fitted to.
     #[error(
         "the fitted view must be representable in f32 and f64, got an extent of {extent_world} world units at {distance_world} from the render origin and {coordinate_world} from the world origin"
     )]
@@ -94,7 +100,8 @@ pub enum ShadowError {
         /// Is the number of slots of the pool.
         capacity: u32,
     },
-    /// The pipeline of a caster was not made for the depth format of the map that the caster is to be drawn into.
+    /// The pipeline of a caster was not made for the depth format of the map that the caster is to
+    /// be drawn into.
     #[error("{field}[{index}]: CasterPipelineDescriptor::depth_formats must name {format:?}")]
     CasterFormat {
         /// Is the path of the list.

@@ -4,26 +4,29 @@ use glam::{DMat3, DVec3};
 
 use crate::Aabb;
 
-/// Holds the right-handed orthonormal axes of light space in world directions: x right, y up, z *toward* the light.
+/// Holds the right-handed orthonormal axes of light space in world directions: x right, y up, z
+/// *toward* the light.
 ///
-/// They depend on the light's direction and on the world's up axis alone, never on a camera, so that texels stay at
-/// their positions in the world.
+/// They depend on the light's direction and on the world's up axis alone, never on a camera, so
+/// that texels stay at their positions in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightAxes {
-    /// Has the rows right, up and toward-light: `light_from_world * v` gives light coordinates of a world direction.
+    /// Has the rows right, up and toward-light: `light_from_world * v` gives light coordinates of a
+    /// world direction.
     pub light_from_world: DMat3,
 }
 
-/// Is the cosine of the angle between light and up axis beyond which the up axis no longer orients the map.
+/// Is the cosine of the angle between light and up axis beyond which the up axis no longer orients
+/// the map.
 ///
-/// Below it the x axis is horizontal, so that ground seen under a grazing sun is a thin rectangle along x. Above it
-/// (within 26 degrees of the zenith) the ground looks alike under every roll, and the axes follow the world's own,
-/// along which ground and walls tend to be cut.
+/// Below it the x axis is horizontal, so that ground seen under a grazing sun is a thin rectangle
+/// along x. Above it (within 26 degrees of the zenith) the ground looks alike under every roll, and
+/// the axes follow the world's own, along which ground and walls tend to be cut.
 const UP_COSINE: f64 = 0.9;
 
 impl LightAxes {
-    /// Returns the axes for a light that shines along `direction_world` (any length but zero; finite), in a world whose
-    /// up axis is `up_world`.
+    /// Returns the axes for a light that shines along `direction_world` (any length but zero;
+    /// finite), in a world whose up axis is `up_world`.
     pub fn new(direction_world: DVec3, up_world: DVec3) -> Self {
         let toward_light = -scaled_unit(direction_world);
         let up = scaled_unit(up_world);
@@ -39,7 +42,8 @@ impl LightAxes {
         }
     }
 
-    /// Returns the axes of a view that looks along `forward` with `up` upward. Both are unit vectors at right angles.
+    /// Returns the axes of a view that looks along `forward` with `up` upward. Both are unit
+    /// vectors at right angles.
     pub(crate) fn looking(forward: DVec3, up: DVec3) -> Self {
         Self {
             light_from_world: DMat3::from_cols(forward.cross(up), up, -forward).transpose(),
@@ -60,13 +64,36 @@ impl LightAxes {
     pub fn toward_light(&self) -> DVec3 {
         self.light_from_world.row(2)
     }
+}
 
-    /// Returns the box in absolute light space of a box in the render space that begins at `origin`.
-    pub(crate) fn light_box(&self, bounds: &Aabb, origin: DVec3) -> LightBox {
+/// Is the light space of a frame: the axes of a light and the position of render space.
+///
+/// Light coordinates are absolute: those of a point stay the same while `origin` moves with a
+/// camera.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LightSpace {
+    pub axes: LightAxes,
+    /// Is the world position at which render space begins.
+    pub origin: DVec3,
+}
+
+impl LightSpace {
+    /// Returns the light coordinates of a point of render space.
+    pub fn point(&self, point_render: DVec3) -> DVec3 {
+        self.axes.light_from_world * (self.origin + point_render)
+    }
+
+    /// Returns z of the light coordinates of a point of render space; it grows toward the light.
+    pub fn depth(&self, point_render: DVec3) -> f64 {
+        self.axes.toward_light().dot(self.origin + point_render)
+    }
+
+    /// Returns the box in light space around a box in render space.
+    pub fn bounds(&self, bounds: &Aabb) -> LightBox {
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
-        let center = self.light_from_world * (origin + (min + max) * 0.5);
+        let center = self.point((min + max) * 0.5);
         let half = (max - min) * 0.5;
-        let rows = self.light_from_world;
+        let rows = self.axes.light_from_world;
         let extent = DVec3::new(
             rows.row(0).abs().dot(half),
             rows.row(1).abs().dot(half),
@@ -84,8 +111,8 @@ fn scaled_unit(v: DVec3) -> DVec3 {
     (v / v.abs().max_element()).normalize()
 }
 
-/// Returns the world axis that is most nearly perpendicular to `up`, made perpendicular to it. Where two axes are
-/// equal, x is taken before z, and z before y.
+/// Returns the world axis that is most nearly perpendicular to `up`, made perpendicular to it.
+/// Where two axes are equal, x is taken before z, and z before y.
 fn horizontal_reference(up: DVec3) -> DVec3 {
     let a = up.abs();
     let axis = if a.x <= a.y && a.x <= a.z {
@@ -143,8 +170,8 @@ impl LightBox {
         self.max = self.max.max(other.max);
     }
 
-    /// Returns the part of the box, at all of its own depths, that is inside the sides of `other` as seen from the
-    /// light, or `None` where there is none.
+    /// Returns the part of the box, at all of its own depths, that is inside the sides of `other`
+    /// as seen from the light, or `None` where there is none.
     pub fn intersection_xy(&self, other: &Self) -> Option<Self> {
         let min = self.min.max(other.min).with_z(self.min.z);
         let max = self.max.min(other.max).with_z(self.max.z);
@@ -164,8 +191,8 @@ impl LightBox {
 mod tests {
     use super::*;
 
-    /// Checks that axes are orthonormal to 4 ulp, right-handed and toward the light, for every axis and a tiny angle
-    /// off it.
+    /// Checks that axes are orthonormal to 4 ulp, right-handed and toward the light, for every axis
+    /// and a tiny angle off it.
     #[test]
     fn axes_are_orthonormal_for_every_direction() {
         let hair = 1e-7;
@@ -198,16 +225,18 @@ mod tests {
     /// Checks that the fast box equals the box of the eight transformed corners.
     #[test]
     fn light_box_is_the_box_of_the_corners() {
-        let axes = LightAxes::new(DVec3::new(0.3, -0.7, 0.2), DVec3::Y);
+        let space = LightSpace {
+            axes: LightAxes::new(DVec3::new(0.3, -0.7, 0.2), DVec3::Y),
+            origin: DVec3::new(1e5, -2e5, 3e5),
+        };
         let bounds = Aabb::new(
             glam::Vec3::new(-1.0, 2.0, 3.0),
             glam::Vec3::new(4.0, 2.5, 9.0),
         );
-        let origin = DVec3::new(1e5, -2e5, 3e5);
-        let fast = axes.light_box(&bounds, origin);
+        let fast = space.bounds(&bounds);
         let mut exact = LightBox::EMPTY;
         for corner in 0..8 {
-            exact.include(axes.light_from_world * (origin + bounds.corner(corner).as_dvec3()));
+            exact.include(space.point(bounds.corner(corner).as_dvec3()));
         }
         // At a magnitude of 4e5, three products and sums come to 8 ulps of f64.
         let tolerance = 8.0 * f64::EPSILON * 4e5;

@@ -1,6 +1,7 @@
-//! Turns the engine's camera, given as any pair of matrices, into half-spaces and depth along the view.
+//! Turns the engine's camera, given as any pair of matrices, into half-spaces and depth along the
+//! view.
 
-use glam::{DMat4, DVec3, DVec4, Mat4, Vec3};
+use glam::{DMat4, DVec3, DVec4, Mat4};
 
 use crate::ShadowError;
 use crate::fit::image_corners::{ImageCorners, SliceSphere};
@@ -8,25 +9,33 @@ use crate::fit::region::{HalfSpace, HalfSpaces};
 
 /// Describes the camera for whose image the shadows are rendered.
 ///
-/// Any projection with WebGPU's clip volume (`-w ≤ x, y ≤ w`, `0 ≤ z ≤ w`) is accepted: perspective with finite or
-/// infinite far plane, forward or reversed depth, off-centre, orthographic. Only the volume counts, not the depth
-/// convention.
+/// Any projection with WebGPU's clip volume (`-w ≤ x, y ≤ w`, `0 ≤ z ≤ w`) is accepted: perspective
+/// with finite or infinite far plane, forward or reversed depth, off-centre, orthographic. Only the
+/// volume counts, not the depth convention.
 ///
-/// A matrix that is not finite or has no finite inverse makes [`ShadowScene::frame`](crate::ShadowScene::frame) return
-/// [`ShadowError::CameraMatrix`]. Matrices of another camera than the one that draws the image leave receivers outside
-/// the maps, and these are then lit.
+/// A matrix that is not finite or has no finite inverse makes
+/// [`ShadowScene::frame`](crate::ShadowScene::frame) return [`ShadowError::CameraMatrix`]. Matrices
+/// of another camera than the one that draws the image leave receivers outside the maps, and these
+/// are then lit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraView {
-    /// Transforms render space to view space; a rigid transform in all but exotic engines. Its translation must be
-    /// relative to the frame's `origin`, as render space is.
+    /// Transforms render space to view space; a rigid transform in all but exotic engines. Its
+    /// translation must be relative to the frame's `origin`, as render space is.
     pub view_from_render: Mat4,
-    /// Transforms view space to clip space. An orthographic camera is taken to look along -z of view space; a
-    /// perspective one looks in the direction in which its w grows.
+    /// Transforms view space to clip space. An orthographic camera is taken to look along -z of
+    /// view space; a perspective one looks in the direction in which its w grows.
     pub clip_from_view: Mat4,
-    /// Is the distance along the view, in world units, beyond which receivers are left lit: above 0, infinity allowed.
-    /// Any other value is [`ShadowError::OutOfRange`]. `f32::INFINITY` (the default of [`CameraView::new`]) covers all
-    /// that the projection and the receivers' bounds make visible. Too large a value costs resolution; too small a
-    /// value ends the shadows in plain sight.
+    /// Is the distance along the view, in world units, beyond which receivers are left lit: above
+    /// 0, infinity allowed. Any other value is [`ShadowError::OutOfRange`]. `f32::INFINITY` (the
+    /// default of [`CameraView::new`]) covers all that the projection and the receivers' bounds
+    /// make visible. Too large a value costs resolution; too small a value ends the shadows in
+    /// plain sight.
+    ///
+    /// A directional light's shadows end at this depth, on a plane across the view. Several cameras
+    /// share the farthest of their planes if all of them have a distance and look the same way to
+    /// within 20 degrees, as the eyes of a headset do; otherwise shadows end where the maps end.
+    /// Shadows of spot and point lights end at the light's range instead; beyond this distance
+    /// nothing is fitted to, so that they may be missing there.
     pub max_distance: f32,
 }
 
@@ -48,7 +57,8 @@ impl CameraView {
         }
     }
 
-    /// Returns the visible volume in render space. `camera` is the index in the frame's list, for errors.
+    /// Returns the visible volume in render space. `camera` is the index in the frame's list, for
+    /// errors.
     pub(crate) fn frustum(&self, camera: usize) -> Result<CameraFrustum, ShadowError> {
         const VIEW: &str = "CameraView::view_from_render";
         let view_from_render = checked(&self.view_from_render, VIEW, camera)?;
@@ -72,8 +82,8 @@ impl CameraView {
         ];
         let mut planes = HalfSpaces::default();
         for side in sides {
-            // An infinite far plane has no direction and keeps everything: w - z is a constant, or vanishes at this
-            // scale.
+            // An infinite far plane has no direction and keeps everything: w - z is a constant, or
+            // vanishes at this scale.
             let scale = rows[3].truncate().length() + side.w.abs();
             if side.truncate().length() > 1e-12 * scale {
                 planes.push(HalfSpace::from_homogeneous(side));
@@ -120,8 +130,8 @@ pub(crate) struct CameraFrustum {
 }
 
 impl CameraFrustum {
-    /// Returns the depths along the view at which the volume begins and ends, whatever is in it; the end may be
-    /// infinite.
+    /// Returns the depths along the view at which the volume begins and ends, whatever is in it;
+    /// the end may be infinite.
     pub fn depth_range(&self) -> (f64, f64) {
         let corners = &self.corners;
         (corners.depth_near, corners.depth_far.min(self.max_distance))
@@ -143,8 +153,8 @@ impl CameraFrustum {
         self.forward
     }
 
-    /// Returns the world height of the image at a depth along the view. It is infinite where the image's corners are at
-    /// infinity, which happens under sufficiently oblique projections.
+    /// Returns the world height of the image at a depth along the view. It is infinite where the
+    /// image's corners are at infinity, which happens under sufficiently oblique projections.
     pub fn image_height(&self, depth: f64) -> f64 {
         let [bottom, _, top, _] = self.corners.at(depth);
         let height = bottom.distance(top);
@@ -165,8 +175,8 @@ impl CameraFrustum {
     }
 
     /// Returns the camera's position in render space.
-    pub fn eye_render(&self) -> Vec3 {
-        self.eye.as_vec3()
+    pub fn eye(&self) -> DVec3 {
+        self.eye
     }
 
     /// Returns the depth of a point along the view in world units.
@@ -192,7 +202,8 @@ impl CameraFrustum {
 
 fn checked(matrix: &Mat4, field: &'static str, camera: usize) -> Result<DMat4, ShadowError> {
     let matrix_double = matrix.as_dmat4();
-    // The determinant's own magnitude says nothing (a scale of 1e-5 gives 1e-20); that the inverse is finite does.
+    // The determinant's own magnitude says nothing (a scale of 1e-5 gives 1e-20); that the inverse
+    // is finite does.
     if matrix.is_finite()
         && matrix_double.determinant() != 0.0
         && matrix_double.inverse().is_finite()

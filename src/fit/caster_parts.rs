@@ -1,33 +1,36 @@
 //! Finds the parts of large casters behind which visible receivers lie.
 //!
-//! The bounds of a ground may reach to the horizon, while all that it can shadow is a foot that is sunk into it. Of a
-//! caster that is much larger than the others, therefore only those parts count: for each receiver, the intersection of
-//! the caster's bounds with the receiver's bounds extruded toward the light.
+//! The bounds of a ground may reach to the horizon, while all that it can shadow is a foot that is
+//! sunk into it. Of a caster that is much larger than the others, therefore only those parts count:
+//! for each receiver, the intersection of the caster's bounds with the receiver's bounds extruded
+//! toward the light.
 
 use glam::DVec3;
 
 use crate::Aabb;
-use crate::fit::axes::{LightAxes, LightBox};
+use crate::fit::axes::{LightBox, LightSpace};
 use crate::fit::caster_shape::CasterShape;
 use crate::fit::view_rounding::position_error_world;
 use crate::fit::visible::SeenReceiver;
 
-/// Is the largest number of casters that are divided into parts, so that the cost stays proportional to the number of
-/// receivers.
+/// Is the largest number of casters that are divided into parts, so that the cost stays
+/// proportional to the number of receivers.
 const MAX_DIVIDED: usize = 16;
 
 /// Is the largest number of pairs of a divided caster and a receiver in a frame.
 const MAX_PAIRS: usize = 1 << 16;
 
 /// Is the least side of a large caster, as a fraction of the side of what all casters cover together.
+/// A smaller one, counted as a whole, makes the map at most a quarter wider, which is little more
+/// than one size step.
 const LARGE_SHARE: f64 = 0.25;
 
 /// Is the union of the parts of one caster that rise about equally high above what they shadow.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CasterPart {
     pub caster: u32,
-    /// Is the greatest distance in world units, perpendicular to the receiver where its direction is known, between a
-    /// point of the part and a receiver behind it.
+    /// Is the greatest distance in world units, perpendicular to the receiver where its direction
+    /// is known, between a point of the part and a receiver behind it.
     pub height: f64,
     pub bounds: Aabb,
     pub light: LightBox,
@@ -35,8 +38,7 @@ pub(crate) struct CasterPart {
 
 /// Holds what is known of the casters of a frame.
 pub(crate) struct Casters<'a> {
-    pub axes: &'a LightAxes,
-    pub origin: DVec3,
+    pub space: &'a LightSpace,
     /// Holds the bounds in render space; has one entry per caster.
     pub bounds: &'a [Aabb],
     pub shapes: &'a [CasterShape],
@@ -68,8 +70,8 @@ impl PartScratch {
         self.divided.clear();
     }
 
-    /// Divides the casters of `candidates` (their indices and light-space boxes) that are large beside all others.
-    /// `visible` is a light-space box that holds all receivers of `seen`.
+    /// Divides the casters of `candidates` (their indices and light-space boxes) that are large
+    /// beside all others. `visible` is a light-space box that holds all receivers of `seen`.
     pub fn find(
         &mut self,
         casters: &Casters<'_>,
@@ -94,8 +96,8 @@ impl PartScratch {
         }
         let limit = limit.min(self.large.len());
         self.large[..limit].sort_unstable_by(larger_first);
-        // Starting from the largest, each caster is divided if it is large in relation to the area that the parts of
-        // the casters before it and the whole casters after it cover.
+        // Starting from the largest, each caster is divided if it is large in relation to the area
+        // that the parts of the casters before it and the whole casters after it cover.
         let mut rest = vec![LightBox::EMPTY; limit + 1];
         for large in &self.large[limit..] {
             rest[limit].union(&large.light);
@@ -130,12 +132,12 @@ fn divide(casters: &Casters<'_>, caster: u32, seen: &[SeenReceiver], parts: &mut
     let bounds = &casters.bounds[caster as usize];
     let shadows_itself = casters.shapes[caster as usize].shadows_itself();
     let first = parts.len();
-    // The depths of a caster are rounded at its corners, and in maps that contain it the bias allows for twice that
-    // rounding. A caster that rises no more than four times as high above its receivers would cost more contact of all
-    // other shadows than its own shadow is worth.
+    // The depths of a caster are rounded at its corners, and in maps that contain it the bias
+    // allows for twice that rounding. A caster that rises no more than four times as high above its
+    // receivers would cost more contact of all other shadows than its own shadow is worth.
     let farthest = bounds.min.abs().max(bounds.max.abs()).as_dvec3().length();
     let least_height = 8.0 * position_error_world(farthest);
-    let toward_light = casters.axes.toward_light();
+    let toward_light = casters.space.axes.toward_light();
     let mut add = |pair: Pair| {
         if pair.height <= least_height {
             return;
@@ -144,7 +146,7 @@ fn divide(casters: &Casters<'_>, caster: u32, seen: &[SeenReceiver], parts: &mut
         let same = parts[first..]
             .iter_mut()
             .find(|part| part.height.log2().floor() == octave);
-        let light = casters.axes.light_box(&pair.bounds, casters.origin);
+        let light = casters.space.bounds(&pair.bounds);
         match same {
             Some(part) => {
                 part.height = part.height.max(pair.height);
@@ -190,11 +192,12 @@ struct Pair {
     height: f64,
 }
 
-/// Returns the part of `caster` that is met by the rays toward the light from a box of receivers, or `None` where none
-/// is met. A ray must have some length, because a surface does not shadow points in itself.
+/// Returns the part of `caster` that is met by the rays toward the light from a box of receivers,
+/// or `None` where none is met. A ray must have some length, because a surface does not shadow
+/// points in itself.
 ///
-/// A point of the box at `r` meets the caster at `r + s l` for some `s` from `near` to `far`, whose limits follow from
-/// the intervals of both boxes on each axis.
+/// A point of the box at `r` meets the caster at `r + s l` for some `s` from `near` to `far`, whose
+/// limits follow from the intervals of both boxes on each axis.
 fn pair(caster: &Aabb, (min, max): (DVec3, DVec3), toward_light: DVec3) -> Option<Pair> {
     let (low, high) = (caster.min.as_dvec3(), caster.max.as_dvec3());
     let (mut near, mut far) = (0.0_f64, f64::INFINITY);
@@ -232,6 +235,7 @@ fn pair(caster: &Aabb, (min, max): (DVec3, DVec3), toward_light: DVec3) -> Optio
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fit::LightAxes;
     use glam::Vec3;
 
     const DOWNWARD: DVec3 = DVec3::new(0.0, -1.0, 0.0);
@@ -247,17 +251,16 @@ mod tests {
         shapes: &[CasterShape],
         seen: &[SeenReceiver],
     ) -> Vec<CasterPart> {
-        let axes = LightAxes::new(direction, DVec3::Y);
-        let casters = Casters {
-            axes: &axes,
+        let space = LightSpace {
+            axes: LightAxes::new(direction, DVec3::Y),
             origin: DVec3::ZERO,
+        };
+        let casters = Casters {
+            space: &space,
             bounds,
             shapes,
         };
-        let boxes: Vec<LightBox> = bounds
-            .iter()
-            .map(|bounds| axes.light_box(bounds, DVec3::ZERO))
-            .collect();
+        let boxes: Vec<_> = bounds.iter().map(|bounds| space.bounds(bounds)).collect();
         let mut visible = LightBox::EMPTY;
         boxes.iter().for_each(|bounds| visible.union(bounds));
         let mut scratch = PartScratch::default();
@@ -279,7 +282,8 @@ mod tests {
         Aabb::new(Vec3::new(-0.2, low, -0.2), Vec3::new(0.2, 0.8, 0.2))
     }
 
-    /// Checks that only the part of a flat ground that is above a sunk foot counts, whatever the ground's size.
+    /// Checks that only the part of a flat ground that is above a sunk foot counts, whatever the
+    /// ground's size.
     #[test]
     fn a_flat_ground_counts_where_a_foot_is_below_it() {
         for half in [5.0_f32, 500.0, 5000.0] {
@@ -291,7 +295,8 @@ mod tests {
             let [part] = parts[..] else {
                 panic!("{parts:?}");
             };
-            // The foot is one centimetre below: toward the light that is at most 1 cm / 0.7 = 1.5 cm.
+            // The foot is one centimetre below: toward the light that is at most 1 cm / 0.7 = 1.5
+            // cm.
             assert!((part.bounds.max.x - 0.2).abs() < 0.015 && part.bounds.min.x >= -0.22);
             assert!((part.height - 0.01 / (0.7 / 1.01_f64.sqrt())).abs() < 1e-6);
         }
@@ -311,8 +316,8 @@ mod tests {
         }
     }
 
-    /// Checks that the height of a carpet two millimetres above a thick ground is measured from the ground's upper side
-    /// if the ground is a cuboid, and otherwise from its lower side.
+    /// Checks that the height of a carpet two millimetres above a thick ground is measured from the
+    /// ground's upper side if the ground is a cuboid, and otherwise from its lower side.
     #[test]
     fn a_carpet_is_as_high_as_it_lies_above_a_cuboid() {
         let carpet = Aabb::new(Vec3::new(-4.0, 0.002, -4.0), Vec3::new(4.0, 0.002, 4.0));
@@ -325,8 +330,8 @@ mod tests {
         }
     }
 
-    /// Checks against random rays that every point of a caster that is met from a receiver is within the caster's
-    /// parts.
+    /// Checks against random rays that every point of a caster that is met from a receiver is
+    /// within the caster's parts.
     #[test]
     fn parts_hold_all_that_rays_meet() {
         let mut state = 7_u32;

@@ -1,9 +1,10 @@
-//! Fits the cascades of a directional light to the visible receivers and to every caster that can reach them.
+//! Fits the cascades of a directional light to the visible receivers and to every caster that can
+//! reach them.
 
 use glam::DVec3;
 
 use crate::fit::axes::{LightAxes, LightBox};
-use crate::fit::cascade_bounds::{CascadeCasters, fit_bounds};
+use crate::fit::cascade_bounds::Cascade;
 use crate::fit::caster_parts::{Casters, PartScratch};
 use crate::fit::directional_input::{CasterBounds, FitInput, FitLimits, Region};
 use crate::fit::extruded_rect::ExtrudedRect;
@@ -15,11 +16,13 @@ use crate::fit::split::MAX_CASCADES;
 use crate::fit::visible::{SeenBounds, SeenLists};
 use crate::{Aabb, ShadowError};
 
-/// Is the cosine of the largest angle, about a degree, by which a light may turn from one frame to the next and keep
-/// the history of its extents.
+/// Is the cosine of the largest angle, about a degree, by which a light may turn from one frame to
+/// the next and keep the history of its extents. A sun that follows the time of day turns by less
+/// in a frame, even where a day takes twenty seconds; a change of scene turns it by more.
 const TURN_COSINE: f64 = 0.999_85;
 
-/// Holds the light-space bounds of a light's cascades, kept from frame to frame for their hysteresis.
+/// Holds the light-space bounds of a light's cascades, kept from frame to frame for their
+/// hysteresis.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct DirectionalFit {
     /// Has one entry per cascade, `None` for a cascade in which nothing can cast a shadow.
@@ -44,8 +47,8 @@ pub(crate) struct FitScratch {
 }
 
 impl DirectionalFit {
-    /// Returns whether the extents of the last frame apply to a light with `axes`. A light that turns by a large angle
-    /// moves all shadows, so that none of them needs to keep its texels.
+    /// Returns whether the extents of the last frame apply to a light with `axes`. A light that
+    /// turns by a large angle moves all shadows, so that none of them needs to keep its texels.
     fn holds_for(&self, axes: &LightAxes) -> bool {
         self.axes.is_some_and(|held| {
             held.toward_light().dot(axes.toward_light()) > TURN_COSINE
@@ -55,8 +58,8 @@ impl DirectionalFit {
 
     /// Returns the fit for this frame and fills `scratch.casters`.
     ///
-    /// Returns an error where casters and receivers are so far from the world's origin that f64 does not distinguish
-    /// their positions.
+    /// Returns an error where casters and receivers are so far from the world's origin that f64
+    /// does not distinguish their positions.
     pub fn fit(
         &self,
         input: &FitInput<'_>,
@@ -68,20 +71,20 @@ impl DirectionalFit {
         scratch
             .casters
             .extend(input.casters.iter().map(|bounds| CasterBounds {
-                light: input.axes.light_box(bounds, input.origin),
+                light: input.space.bounds(bounds),
                 can_shadow: !bounds.is_empty()
-                    && can_shadow(bounds, &visible, input.axes.toward_light()),
+                    && can_shadow(bounds, &visible, input.space.axes.toward_light()),
             }));
         divide_casters(input, &visible, scratch);
         let any_casts = scratch.casters.iter().any(|caster| caster.can_shadow)
             || !scratch.parts.parts.is_empty();
-        let history = if self.holds_for(&input.axes) {
+        let history = if self.holds_for(&input.space.axes) {
             self.clone()
         } else {
             Self::default()
         };
         let mut next = history.clone();
-        next.axes = Some(input.axes);
+        next.axes = Some(input.space.axes);
         let depths = held_depths(&visible, history.held_depths.as_ref());
         next.held_depths = depths.or(history.held_depths);
         for cascade in 0..limits.cascades {
@@ -93,19 +96,15 @@ impl DirectionalFit {
             let held_bounds = match required {
                 Some(required) if any_casts => {
                     let spacing = checked_spacing(input, limits, slice.as_ref(), &required)?;
-                    let casters = CascadeCasters {
-                        whole: &scratch.casters,
-                        parts: &scratch.parts.parts,
-                    };
-                    let between = slice.as_ref().map(|slice| slice.between);
-                    fit_bounds(
+                    let cascade = Cascade {
                         input,
                         limits,
-                        &casters,
-                        (required, spacing),
-                        (seen, between),
-                        held,
-                    )
+                        casters: &scratch.casters,
+                        parts: &scratch.parts.parts,
+                        seen,
+                        between: slice.as_ref().map(|slice| slice.between),
+                    };
+                    cascade.fit(&required, spacing, held)
                 }
                 _ => None,
             };
@@ -114,15 +113,15 @@ impl DirectionalFit {
             next.light_bounds[cascade] = light_bounds;
             next.slices[cascade] = slice.zip(light_bounds).map(|(slice, light_bounds)| {
                 let scratch = &mut scratch.footprint;
-                slice.report(&input.axes, input.origin, &light_bounds.rect, scratch)
+                slice.report(&input.space, &light_bounds.rect, scratch)
             });
         }
         Ok(next)
     }
 
-    /// Returns the light-space bounds of a cascade that something casts into, and adds its casters to `drawn`: those of
-    /// which some part is within the map rectangle, seen along the light, and in front of the far plane. `scratch` is
-    /// the one that the fit has filled.
+    /// Returns the light-space bounds of a cascade that something casts into, and adds its casters
+    /// to `drawn`: those of which some part is within the map rectangle, seen along the light, and
+    /// in front of the far plane. `scratch` is the one that the fit has filled.
     pub fn cull(
         &self,
         cascade: usize,
@@ -131,8 +130,8 @@ impl DirectionalFit {
         drawn: &mut Vec<u32>,
     ) -> Option<&LightSpaceBounds> {
         let light_bounds = self.light_bounds[cascade].as_ref()?;
-        let spacing = Spacing::around(input.origin, &light_bounds.bounds());
-        let volume = ExtrudedRect::new(&input.axes, input.origin, &light_bounds.rect);
+        let spacing = Spacing::around(input.space.origin, &light_bounds.bounds());
+        let volume = ExtrudedRect::new(&input.space, &light_bounds.rect);
         let reaches = |light: &LightBox, bounds: &Aabb| {
             light_bounds.holds_part_of(&spacing.widest(light)) && volume.meets(bounds)
         };
@@ -164,20 +163,19 @@ fn find_visible(input: &FitInput<'_>, lists: &mut SeenLists) -> SeenBounds {
     }
 }
 
-/// Replaces casters that are much larger than all others by the parts of them that count. In a given box everything
-/// receives, so that all of a caster counts.
+/// Replaces casters that are much larger than all others by the parts of them that count. In a
+/// given box everything receives, so that all of a caster counts.
 fn divide_casters(input: &FitInput<'_>, visible: &SeenBounds, scratch: &mut FitScratch) {
     if matches!(input.region, Region::Bounds(_)) {
         return scratch.parts.clear();
     }
     let casters = Casters {
-        axes: &input.axes,
-        origin: input.origin,
+        space: &input.space,
         bounds: input.casters,
         shapes: input.shapes,
     };
     let visible = Aabb::around(visible.render_min, visible.render_max);
-    let visible = input.axes.light_box(&visible, input.origin);
+    let visible = input.space.bounds(&visible);
     let candidates = (0u32..).zip(&scratch.casters);
     let candidates = candidates.filter(|(_, caster)| caster.can_shadow);
     let candidates = candidates.map(|(index, caster)| (index, caster.light));
@@ -188,10 +186,11 @@ fn divide_casters(input: &FitInput<'_>, visible: &SeenBounds, scratch: &mut FitS
     }
 }
 
-/// Returns whether a shadow of `caster` can fall on anything visible. A point is shadowed by a point of the caster
-/// further along the way to the light, so on each world axis the caster must reach beyond the receivers' near end in
-/// the light's direction. A flat floor under everything else fails this (it reaches just as far as the lowest receiver:
-/// itself), and neither widens the light-space bounds nor is drawn.
+/// Returns whether a shadow of `caster` can fall on anything visible. A point is shadowed by a
+/// point of the caster further along the way to the light, so on each world axis the caster must
+/// reach beyond the receivers' near end in the light's direction. A flat floor under everything
+/// else fails this (it reaches just as far as the lowest receiver: itself), and neither widens the
+/// light-space bounds nor is drawn.
 fn can_shadow(caster: &Aabb, receivers: &SeenBounds, toward_light: DVec3) -> bool {
     let (low, high) = (caster.min.as_dvec3(), caster.max.as_dvec3());
     (0..3).all(|axis| {

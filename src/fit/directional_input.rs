@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::Aabb;
-use crate::fit::axes::{LightAxes, LightBox};
+use crate::fit::axes::{LightBox, LightSpace};
 use crate::fit::camera::CameraFrustum;
 use crate::fit::caster_shape::CasterShape;
 use crate::fit::split::SplitRule;
@@ -15,7 +15,8 @@ use crate::fit::visible::Receivers;
 pub(crate) enum Region<'a> {
     /// Counts what any of these cameras sees of the receivers.
     Cameras(&'a [CameraFrustum]),
-    /// Counts all that is inside a given box. The light-space bounds then cover the box, whatever the casters.
+    /// Counts all that is inside a given box. The light-space bounds then cover the box, whatever
+    /// the casters.
     Bounds(Aabb),
     /// Counts all receivers.
     Everything,
@@ -23,8 +24,7 @@ pub(crate) enum Region<'a> {
 
 /// Holds the input of a frame.
 pub(crate) struct FitInput<'a> {
-    pub axes: LightAxes,
-    pub origin: DVec3,
+    pub space: LightSpace,
     pub region: Region<'a>,
     /// Holds the bounds of what casts; empty ones cast nothing.
     pub casters: &'a [Aabb],
@@ -38,7 +38,8 @@ pub(crate) struct FitInput<'a> {
 pub(crate) struct FitLimits {
     pub map_size: u32,
     pub margin_texels: u32,
-    /// Is the height in texels, above a surface, below which the bias may leave a caster without its shadow.
+    /// Is the height in texels, above a surface, below which the bias may leave a caster without
+    /// its shadow.
     pub gap_texels: f64,
     pub cascades: usize,
     pub split: SplitRule,
@@ -49,24 +50,25 @@ pub(crate) struct FitLimits {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CasterBounds {
     pub light: LightBox,
-    /// Is false where no visible receiver is behind the caster: a ground plane below everything shadows nothing. It is
-    /// false as well for a caster that is divided into parts, which count in its place.
+    /// Is false where no visible receiver is behind the caster: a ground plane below everything
+    /// shadows nothing. It is false as well for a caster that is divided into parts, which count in
+    /// its place.
     pub can_shadow: bool,
 }
 
 impl FitInput<'_> {
-    /// Returns four ulps of f32 at the farthest render coordinate of what is covered, up to the highest receiver:
-    /// texels finer than receivers' positions would resolve nothing. The height of a caster above the receivers does
-    /// not count.
+    /// Returns four ulps of f32 at the farthest render coordinate of what is covered, up to the
+    /// highest receiver: texels finer than receivers' positions would resolve nothing. The height
+    /// of a caster above the receivers does not count.
     pub fn texel_floor(&self, covered: &LightBox, highest_receiver: f64) -> f64 {
         let reach = self.render_reach(covered, highest_receiver);
         4.0 * f64::from(f32::EPSILON) * reach.max(f64::from(f32::MIN_POSITIVE) * 1e8)
     }
 
-    /// Returns the farthest render coordinate, along an axis of the light, of what is covered up to the highest
-    /// receiver.
+    /// Returns the farthest render coordinate, along an axis of the light, of what is covered up to
+    /// the highest receiver.
     pub fn render_reach(&self, covered: &LightBox, highest_receiver: f64) -> f64 {
-        let origin_light = self.axes.light_from_world * self.origin;
+        let origin_light = self.space.point(DVec3::ZERO);
         let highest = covered.max.with_z(highest_receiver);
         (covered.min - origin_light)
             .abs()

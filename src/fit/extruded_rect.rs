@@ -1,19 +1,19 @@
-//! Defines the map rectangle of a directional light extruded without end toward the light: the volume that casters must
-//! reach into to cast into the map.
+//! Defines the map rectangle of a directional light extruded without end toward the light: the
+//! volume that casters must reach into to cast into the map.
 
 use glam::{DVec2, DVec3};
 
 use crate::Aabb;
-use crate::fit::LightAxes;
+use crate::fit::axes::LightSpace;
 use crate::fit::map_rect::MapRect;
 use crate::fit::region::{HalfSpace, HalfSpaces};
 
 /// Is the volume over a map rectangle, prepared so that many boxes can be tested against it.
 ///
-/// Seen along the light a box is a hexagon, whose sides run along the projected world axes. Two convex figures in the
-/// plane are apart exactly if a normal of one's sides separates them (Gottschalk et al. 1996): two normals of the
-/// rectangle, and three of the hexagon. The caller has tested the rectangle's own already, with the box's interval in
-/// light space.
+/// Seen along the light a box is a hexagon, whose sides run along the projected world axes. Two
+/// convex figures in the plane are apart exactly if a normal of one's sides separates them
+/// (Gottschalk et al. 1996): two normals of the rectangle, and three of the hexagon. The caller has
+/// tested the rectangle's own already, with the box's interval in light space.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ExtrudedRect {
     center_render: DVec3,
@@ -22,7 +22,8 @@ pub(crate) struct ExtrudedRect {
     sides: [Side; 3],
 }
 
-/// Is a normal of the hexagon's sides, as a direction of render space, with the half-extent of the rectangle along it.
+/// Is a normal of the hexagon's sides, as a direction of render space, with the half-extent of the
+/// rectangle along it.
 #[derive(Clone, Copy, Debug)]
 struct Side {
     normal: DVec3,
@@ -31,7 +32,8 @@ struct Side {
 }
 
 impl ExtrudedRect {
-    pub fn new(axes: &LightAxes, origin: DVec3, rect: &MapRect) -> Self {
+    pub fn new(space: &LightSpace, rect: &MapRect) -> Self {
+        let LightSpace { axes, origin } = space;
         let half = (rect.max() - rect.min) * 0.5;
         let center = rect.min + half;
         let center_world = axes.right() * center.x + axes.up() * center.y;
@@ -47,14 +49,15 @@ impl ExtrudedRect {
         });
         Self {
             // Any point of the axis is as good: normals are perpendicular to the light.
-            center_render: center_world - origin,
+            center_render: center_world - *origin,
             // The error is a few ulps of what was subtracted.
             center_error: 8.0 * f64::EPSILON * origin.length().max(center_world.length()),
             sides,
         }
     }
 
-    /// Returns whether the box, seen along the light, overlaps the rectangle on all of the hexagon's normals.
+    /// Returns whether the box, seen along the light, overlaps the rectangle on all of the
+    /// hexagon's normals.
     pub fn meets(&self, bounds: &Aabb) -> bool {
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
         let between = (min + max) * 0.5 - self.center_render;
@@ -69,15 +72,16 @@ impl ExtrudedRect {
     }
 }
 
-/// Adds the four sides of an extruded rectangle, from `min` to `max` across the light, to a region of render space.
+/// Adds the four sides of an extruded rectangle, from `min` to `max` across the light, to a region
+/// of render space.
 pub(crate) fn push_extruded_rect(
     region: &mut HalfSpaces,
-    axes: &LightAxes,
-    origin: DVec3,
+    space: &LightSpace,
     (min, max): (DVec2, DVec2),
 ) {
+    let LightSpace { axes, origin } = space;
     for (axis, low, high) in [(axes.right(), min.x, max.x), (axes.up(), min.y, max.y)] {
-        let origin = axis.dot(origin);
+        let origin = axis.dot(*origin);
         region.push(HalfSpace {
             normal: axis,
             offset: origin - low,
@@ -92,7 +96,7 @@ pub(crate) fn push_extruded_rect(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::LightBox;
+    use crate::fit::axes::{LightAxes, LightBox};
 
     /// Returns pseudo-random numbers in -1..1.
     fn noise(state: &mut u32) -> f64 {
@@ -100,8 +104,9 @@ mod tests {
         f64::from(*state) / f64::from(u32::MAX) * 2.0 - 1.0
     }
 
-    /// Checks that interval and volume together agree with clipping the box by the four sides, except for boxes that
-    /// touch within 1e-9, and that the volume culls some boxes that the interval lets pass.
+    /// Checks that interval and volume together agree with clipping the box by the four sides,
+    /// except for boxes that touch within 1e-9, and that the volume culls some boxes that the
+    /// interval lets pass.
     #[test]
     fn an_extruded_rect_meets_what_reaches_into_it() {
         let mut state = 1;
@@ -111,6 +116,7 @@ mod tests {
             let direction = DVec3::new(random(), random(), random());
             let axes = LightAxes::new(direction, DVec3::Y);
             let origin = DVec3::new(random(), random(), random()) * 1e4;
+            let space = LightSpace { axes, origin };
             let middle = DVec3::new(random(), random(), random()) * 3.0;
             let half = DVec3::new(random(), random(), random()).abs() * 1.5;
             let bounds = Aabb::new((middle - half).as_vec3(), (middle + half).as_vec3());
@@ -121,11 +127,11 @@ mod tests {
                 texel,
                 map_size: 32,
             };
-            let light: LightBox = axes.light_box(&bounds, origin);
+            let light: LightBox = space.bounds(&bounds);
             let (min, max) = (rect.min, rect.max());
             let interval =
                 light.min.truncate().cmple(max).all() && light.max.truncate().cmpge(min).all();
-            let met = interval && ExtrudedRect::new(&axes, origin, &rect).meets(&bounds);
+            let met = interval && ExtrudedRect::new(&space, &rect).meets(&bounds);
             let clipped = |grow: f64| {
                 let grown = MapRect {
                     min: rect.min - grow,
@@ -133,7 +139,7 @@ mod tests {
                     ..rect
                 };
                 let mut region = HalfSpaces::default();
-                push_extruded_rect(&mut region, &axes, origin, (grown.min, grown.max()));
+                push_extruded_rect(&mut region, &space, (grown.min, grown.max()));
                 let mut any = false;
                 region.visit_vertices(&bounds, |_| any = true);
                 any

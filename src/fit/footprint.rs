@@ -1,10 +1,10 @@
-//! Measures how much of a cascade's map falls on its slice of the view, and how its texels compare with the image's
-//! pixels.
+//! Measures how much of a cascade's map falls on its slice of the view, and how its texels compare
+//! with the image's pixels.
 
-use glam::{DVec2, DVec3, Vec2};
+use glam::{DVec2, Vec2};
 
 use crate::Aabb;
-use crate::fit::LightAxes;
+use crate::fit::axes::LightSpace;
 use crate::fit::camera::CameraFrustum;
 use crate::fit::extruded_rect::push_extruded_rect;
 use crate::fit::map_rect::MapRect;
@@ -14,24 +14,27 @@ use crate::fit::visible::SeenBounds;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SliceReport {
-    /// Is the depth along the view, in world units, at which the cascade's slice begins. For the first cascade that is
-    /// the nearest visible receiver, or the camera's near plane under
+    /// Is the depth along the view, in world units, at which the cascade's slice begins. For the
+    /// first cascade that is the nearest visible receiver, or the camera's near plane under
     /// [`Stability::BoundingSphere`](crate::Stability::BoundingSphere).
     pub depth_near: f32,
     /// Is the depth along the view, in world units, at which the slice ends.
     pub depth_far: f32,
-    /// Is the share of the map's texels that fall on the slice, within the bounds of what is visible: 0 to 1. The rest
-    /// of the map, most of it where this is small, is behind the camera or beside its image.
+    /// Is the share of the map's texels that fall on the slice, within the bounds of what is
+    /// visible: 0 to 1. The rest of the map, most of it where this is small, is behind the camera
+    /// or beside its image.
     pub map_utilization: f32,
-    /// Counts the texels across the height of the image, on a surface that faces both light and camera: x is the fewest
-    /// (coarser axis, nearest depth) and y the most (finer axis, farthest depth). The counts are infinite where the
-    /// image has no end at that depth, as under an oblique projection.
+    /// Counts the texels across the height of the image, on a surface that faces both light and
+    /// camera: x is the fewest (coarser axis, nearest depth) and y the most (finer axis, farthest
+    /// depth). The counts are infinite where the image has no end at that depth, as under an
+    /// oblique projection.
     pub texels_across_image: Vec2,
 }
 
 impl SliceReport {
-    /// Returns the texels per pixel of an image that is `image_height_pixels` pixels high: x is the fewest and y the
-    /// most. Below 1, edges show their texels; far above 1, the map could be smaller.
+    /// Returns the texels per pixel of an image that is `image_height_pixels` pixels high: x is the
+    /// fewest and y the most. Below 1, edges show their texels; far above 1, the map could be
+    /// smaller.
     pub fn texels_per_pixel(&self, image_height_pixels: u32) -> Vec2 {
         self.texels_across_image / image_height_pixels as f32
     }
@@ -55,14 +58,13 @@ impl Slice<'_> {
     /// Returns how `rect` covers the slice.
     pub fn report(
         &self,
-        axes: &LightAxes,
-        origin: DVec3,
+        space: &LightSpace,
         rect: &MapRect,
         scratch: &mut FootprintScratch,
     ) -> SliceReport {
         let (near, far) = self.between;
         let mut region = self.camera.slice(near, far);
-        push_extruded_rect(&mut region, axes, origin, (rect.min, rect.max()));
+        push_extruded_rect(&mut region, space, (rect.min, rect.max()));
         let visible = Aabb::new(
             self.visible.render_min.as_vec3(),
             self.visible.render_max.as_vec3(),
@@ -70,8 +72,9 @@ impl Slice<'_> {
         // The points are relative to the rectangle, so that a distant origin costs no precision.
         scratch.points.clear();
         region.visit_vertices(&visible, |vertex| {
-            let light = axes.light_from_world * (origin + vertex);
-            scratch.points.push(light.truncate() - rect.min);
+            scratch
+                .points
+                .push(space.point(vertex).truncate() - rect.min);
         });
         let size = rect.max() - rect.min;
         let share = hull_area(scratch) / (size.x * size.y);
@@ -98,7 +101,8 @@ fn hull_area(scratch: &mut FootprintScratch) -> f64 {
         [.., a, b] => (*b - *a).perp_dot(next - *b) > 0.0,
         _ => true,
     };
-    // The lower chain goes from left to right, then the upper one back; the second never removes points of the first.
+    // The lower chain goes from left to right, then the upper one back; the second never removes
+    // points of the first.
     for &point in points.iter() {
         while hull.len() >= 2 && !turns_left(hull, point) {
             hull.pop();

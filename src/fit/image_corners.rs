@@ -1,4 +1,5 @@
-//! Computes the corners of a camera's image at any depth, and the sphere around a slice of its view.
+//! Computes the corners of a camera's image at any depth, and the sphere around a slice of its
+//! view.
 
 use glam::{DMat4, DVec3};
 
@@ -9,8 +10,8 @@ pub(crate) struct SliceSphere {
     pub radius: f64,
 }
 
-/// Holds the corners of a camera's image in view space. Spheres are made from them, so that no rounding of the camera's
-/// pose reaches a radius.
+/// Holds the corners of a camera's image in view space. Spheres are made from them, so that no
+/// rounding of the camera's pose reaches a radius.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ImageCorners {
     /// Holds, for each corner, its position at depth zero and what a unit of depth adds.
@@ -42,8 +43,8 @@ impl ImageCorners {
             };
             (position - per_depth * forward_view.dot(position), per_depth)
         });
-        // This is the depth of a corner of the near or far plane. Oblique planes have one corner nearer than their
-        // middle, and may extend beyond infinity.
+        // This is the depth of a corner of the near or far plane. Oblique planes have one corner
+        // nearer than their middle, and may extend beyond infinity.
         let depth = |(x, y), z| {
             let (point, w) = at(x, y, z);
             if w <= 1e-12 * point.length() {
@@ -67,8 +68,8 @@ impl ImageCorners {
             .map(|(start, per_depth)| start + per_depth * depth)
     }
 
-    /// Returns centre and radius of the smallest sphere with its centre on the slice's axis that holds the slice
-    /// between two depths.
+    /// Returns centre and radius of the smallest sphere with its centre on the slice's axis that
+    /// holds the slice between two depths.
     pub fn sphere_in_view(&self, depth_near: f64, depth_far: f64) -> (DVec3, f64) {
         let middle = |corners: &[DVec3; 4]| corners.iter().sum::<DVec3>() * 0.25;
         let (near, far) = (self.at(depth_near), self.at(depth_far));
@@ -96,8 +97,9 @@ mod tests {
     use super::*;
     use glam::dcamera::rh::proj::directx::{perspective, perspective_infinite_reverse};
 
-    /// Checks with depths 1 to 9 and tangents 0.5 and 1 that forward and reversed projections, with and without a far
-    /// plane, agree about a slice; its corners are on or in the sphere, at least those of two depths on it.
+    /// Checks with depths 1 to 9 and tangents 0.5 and 1 that forward and reversed projections, with
+    /// and without a far plane, agree about a slice; its corners are on or in the sphere, at least
+    /// those of two depths on it.
     #[test]
     fn a_sphere_holds_its_slice() {
         let projections = [
@@ -111,8 +113,8 @@ mod tests {
             let far = if index == 2 { f64::INFINITY } else { 9.0 };
             assert!(corners.depth_far == far || (corners.depth_far - far).abs() < 1e-9);
             let (center, radius) = corners.sphere_in_view(2.0, 6.0);
-            // By hand: the near corners are 2·√1.25 from the axis, the far ones 6·√1.25; the centre would be (4² + 45 -
-            // 5) / (2 · 4) = 7 behind the near end, which is past the far one.
+            // By hand: the near corners are 2·√1.25 from the axis, the far ones 6·√1.25; the centre
+            // would be (4² + 45 - 5) / (2 · 4) = 7 behind the near end, which is past the far one.
             assert!((center - DVec3::new(0.0, 0.0, -6.0)).length() < 1e-9);
             assert!((radius - 45.0_f64.sqrt()).abs() < 1e-9, "{radius}");
         }
@@ -131,8 +133,9 @@ mod tests {
         }
     }
 
-    /// Checks that an oblique near plane, such as a mirror's camera has, begins at its nearest corner: x / 2 + depth =
-    /// 3, at x = ±depth. With a scale of one half the left corners' depths at z = 0.25 are infinite.
+    /// Checks that an oblique near plane, such as a mirror's camera has, begins at its nearest
+    /// corner: x / 2 + depth = 3, at x = ±depth. With a scale of one half the left corners' depths
+    /// at z = 0.25 are infinite.
     #[test]
     fn a_leaning_near_plane_begins_at_its_nearest_corner() {
         for scale in [0.25, 0.5] {

@@ -1,12 +1,14 @@
-//! Fits the views of a local light: the part of each that receivers and casters share, and its near plane.
+//! Fits the views of a local light: the part of each that receivers and casters share, and its near
+//! plane.
 //!
-//! Map coordinates of a perspective view are tangents, x / w and y / w with w the distance along the view's axis, and
-//! ndc depth is near / w (reversed, infinite far plane): its relative error is that of f32 at any distance.
+//! Map coordinates of a perspective view are tangents, x / w and y / w with w the distance along
+//! the view's axis, and ndc depth is near / w (reversed, infinite far plane): its relative error is
+//! that of f32 at any distance.
 
 use glam::{DVec2, DVec3};
 
 use crate::Aabb;
-use crate::fit::axes::LightAxes;
+use crate::fit::axes::{LightAxes, LightSpace};
 use crate::fit::local_input::LocalInput;
 use crate::fit::map_rect::{HeldRect, MapRect, MapRectRequest};
 use crate::fit::reached::{self, Reached};
@@ -16,19 +18,24 @@ use crate::fit::size_step::HeldSize;
 /// Is the largest number of views of one local light.
 pub(crate) const MAX_LOCAL_VIEWS: usize = 6;
 
-/// Holds the map rectangles and near planes of a local light, kept from frame to frame for their hysteresis.
+/// Holds the map rectangles and near planes of a local light, kept from frame to frame for their
+/// hysteresis.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LocalFit {
     /// Holds rectangles in tangents, `None` for a view in which nothing can cast a shadow.
     pub rects: [Option<MapRect>; MAX_LOCAL_VIEWS],
     held: [Option<HeldRect>; MAX_LOCAL_VIEWS],
-    /// Is the world distance of each view's near plane along its axis, 0 for a view that has never been needed.
+    /// Is the world distance of each view's near plane along its axis, 0 for a view that has never
+    /// been needed.
     pub near: [f64; MAX_LOCAL_VIEWS],
-    /// Is the largest world distance, along an axis, of a corner of a caster of each view from the light.
+    /// Is the largest world distance, along an axis, of a corner of a caster of each view from the
+    /// light.
     pub caster_reach: [f64; MAX_LOCAL_VIEWS],
-    /// Is the world distance up to which receivers are seen, rounded up to a size step, and at most the light's range.
+    /// Is the world distance up to which receivers are seen, rounded up to a size step, and at most
+    /// the light's range.
     pub reach: f64,
-    /// Holds the same distance before the range limits it; `None` where no receiver is seen within the range.
+    /// Holds the same distance before the range limits it; `None` where no receiver is seen within
+    /// the range.
     held_reach: Option<HeldSize>,
 }
 
@@ -39,13 +46,8 @@ struct Extent {
 }
 
 impl LocalFit {
-    /// Discards the extents of earlier frames.
-    pub fn reset_history(&mut self) {
-        self.held = [None; MAX_LOCAL_VIEWS];
-        self.held_reach = None;
-    }
-
-    /// Returns the fit for this frame. Each list of `drawn` is filled with the indices of the casters of one view.
+    /// Returns the fit for this frame. Each list of `drawn` is filled with the indices of the
+    /// casters of one view.
     pub fn fit(
         &self,
         input: &LocalInput<'_>,
@@ -103,8 +105,9 @@ impl LocalFit {
         next
     }
 
-    /// Returns the distance up to which the light matters: where the farthest receiver that is seen ends, and at most the
-    /// light's range. It grows with what is seen at once, and shrinks late. The second value is what is held of it.
+    /// Returns the distance up to which the light matters: where the farthest receiver that is seen
+    /// ends, and at most the light's range. It grows with what is seen at once, and shrinks late.
+    /// The second value is what is held of it.
     fn reach(&self, input: &LocalInput<'_>, light: DVec3) -> (f64, Option<HeldSize>) {
         // The six faces of a cube cover all directions together. The one view of a cone does not.
         let cone = match input.views {
@@ -125,14 +128,15 @@ impl LocalFit {
     }
 }
 
-/// Returns the near plane for a caster that begins `distance` along the axis and need not be resolved below `nearest`. The
-/// distance is rounded down to a power of two, so that it changes rarely.
+/// Returns the near plane for a caster that begins `distance` along the axis and need not be
+/// resolved below `nearest`. The distance is rounded down to a power of two, so that it changes
+/// rarely.
 fn near_plane(distance: f64, nearest: f64) -> f64 {
     distance.max(nearest).log2().floor().exp2().max(nearest)
 }
 
-/// Returns the near plane to use for `near` where `held` is in use: a caster that comes and goes across a power of two
-/// changes it once.
+/// Returns the near plane to use for `near` where `held` is in use: a caster that comes and goes
+/// across a power of two changes it once.
 fn steady_near(near: f64, held: f64) -> f64 {
     if held <= near && 2.0 * held >= near {
         held
@@ -148,8 +152,8 @@ struct ViewFrame<'a> {
 }
 
 impl ViewFrame<'_> {
-    /// Returns the rectangle of tangents that both casters and receivers cover, or `None` if they share none. Where
-    /// lookups reach around their receiver, casters alone decide.
+    /// Returns the rectangle of tangents that both casters and receivers cover, or `None` if they
+    /// share none. Where lookups reach around their receiver, casters alone decide.
     fn needed(
         &self,
         input: &LocalInput<'_>,
@@ -201,7 +205,8 @@ impl ViewFrame<'_> {
         region
     }
 
-    /// Returns the rectangle of tangents that the boxes cover within the region, or `None` where no box is in it.
+    /// Returns the rectangle of tangents that the boxes cover within the region, or `None` where no
+    /// box is in it.
     fn extent<'b>(
         &self,
         region: &HalfSpaces,
@@ -222,7 +227,8 @@ impl ViewFrame<'_> {
         extent.min.cmple(extent.max).all().then_some(extent)
     }
 
-    /// Returns the least distance along the axis of the part of a box within the region, or `None` where no part is.
+    /// Returns the least distance along the axis of the part of a box within the region, or `None`
+    /// where no part is.
     fn nearest_within(&self, region: &HalfSpaces, bounds: &Aabb) -> Option<f64> {
         match region.relation(bounds) {
             Relation::Outside => None,
@@ -240,7 +246,11 @@ impl ViewFrame<'_> {
 
     /// Returns the box's intervals on the view's axes, measured from the light.
     fn span(&self, bounds: &Aabb) -> Span {
-        let local = self.axes.light_box(bounds, -self.light);
+        let around_light = LightSpace {
+            axes: *self.axes,
+            origin: -self.light,
+        };
+        let local = around_light.bounds(bounds);
         Span {
             min: local.min.truncate(),
             max: local.max.truncate(),
@@ -275,9 +285,9 @@ impl Extent {
     }
 }
 
-/// Returns the finest texel, as a tangent: four ulps of f32 at the light's render coordinates seen from the end of its
-/// reach, and at least four ulps of one, the tangent at a view's border. Close to the light texels may be finer than
-/// positions; at the end of its reach they are not.
+/// Returns the finest texel, as a tangent: four ulps of f32 at the light's render coordinates seen
+/// from the end of its reach, and at least four ulps of one, the tangent at a view's border. Close
+/// to the light texels may be finer than positions; at the end of its reach they are not.
 fn texel_floor(light: DVec3, reach: f64) -> f64 {
     4.0 * f64::from(f32::EPSILON) * (light.abs().max_element() / reach).max(1.0)
 }

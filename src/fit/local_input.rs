@@ -18,8 +18,8 @@ pub(crate) struct LocalInput<'a> {
     pub receiver_tangent: f64,
     /// Is the same for casters: wider by the reach of a kernel at the border.
     pub caster_tangent: f64,
-    /// States that lookups reach beyond the position of their receiver: views are then not limited to where receivers
-    /// are seen.
+    /// States that lookups reach beyond the position of their receiver: views are then not limited
+    /// to where receivers are seen.
     pub looks_around: bool,
     /// Holds the regions in which receivers count: what the cameras see, or everywhere.
     pub seen: &'a [HalfSpaces],

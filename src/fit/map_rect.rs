@@ -1,16 +1,17 @@
-//! Fits the rectangle of the map plane that one view covers: quantized extents, snapped to whole texels in absolute
-//! coordinates.
+//! Fits the rectangle of the map plane that one view covers: quantized extents, snapped to whole
+//! texels in absolute coordinates.
 
 use glam::DVec2;
 
 use crate::fit::LightBox;
 use crate::fit::size_step::{HeldSize, size_step_up};
 
-/// Is the number of steps into which a depth range is divided; its ends are on whole steps, so that they rarely move.
+/// Is the number of steps into which a depth range is divided; its ends are on whole steps, so that
+/// they rarely move.
 const DEPTH_STEPS: f64 = 64.0;
 
-/// States what a map rectangle must hold, and at which resolution. Units are the map plane's own: world units in light
-/// space for an orthographic view, tangents of angles for a perspective one.
+/// States what a map rectangle must hold, and at which resolution. Units are the map plane's own:
+/// world units in light space for an orthographic view, tangents of angles for a perspective one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MapRectRequest {
     /// Is the least x and y to cover.
@@ -23,17 +24,18 @@ pub(crate) struct MapRectRequest {
     pub margin_texels: u32,
     /// Is the finest texel that render space can resolve at this position.
     pub texel_floor: f64,
-    /// Is half the side of a square around the plane's origin that holds everything that can ever be needed, margins
-    /// included; infinite if there is no such square. Where a quantized size step would make texels no finer than those
-    /// of the square, the square is used, which never moves.
+    /// Is half the side of a square around the plane's origin that holds everything that can ever
+    /// be needed, margins included; infinite if there is no such square. Where a quantized size
+    /// step would make texels no finer than those of the square, the square is used, which never
+    /// moves.
     pub full_half_side: f64,
 }
 
 /// Is a rectangle of whole texels in the plane of a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MapRect {
-    /// Is the least x and y: a whole number of texels from the plane's origin, except where the rectangle is the full
-    /// square of its request or too small to snap.
+    /// Is the least x and y: a whole number of texels from the plane's origin, except where the
+    /// rectangle is the full square of its request or too small to snap.
     pub min: DVec2,
     /// Is the size of a texel along x and y.
     pub texel: DVec2,
@@ -57,8 +59,8 @@ pub(crate) struct HeldRect {
 }
 
 impl HeldRect {
-    /// Returns the rectangle for `request`. The `held` one is kept, on each axis by itself, as long as it satisfies the
-    /// request, so that small motions of a camera change nothing.
+    /// Returns the rectangle for `request`. The `held` one is kept, on each axis by itself, as long
+    /// as it satisfies the request, so that small motions of a camera change nothing.
     pub fn fit(request: &MapRectRequest, held: Option<&Self>) -> Self {
         let held = held.filter(|held| held.rect.map_size == request.map_size);
         let (min_x, texel_x, held_x) = fit_axis(request, held, 0);
@@ -83,7 +85,8 @@ fn fit_axis(
     let (low, high) = (request.min[axis], request.max[axis]);
     let size = f64::from(request.map_size);
     let margin = f64::from(request.margin_texels);
-    // One texel is lost to snapping. A map that is all margin is too small to snap: it is centred on what it covers.
+    // One texel is lost to snapping. A map that is all margin is too small to snap: it is centred
+    // on what it covers.
     let usable = size - 2.0 * margin - 1.0;
     if usable < 1.0 {
         let needed = ((high - low) / size).max(request.texel_floor);
@@ -129,8 +132,8 @@ pub(crate) struct HeldDepth {
 impl HeldDepth {
     /// Returns a range that holds `far..near` and is at least `least` deep.
     pub fn fit(far: f64, near: f64, least: f64, held: Option<&Self>) -> Self {
-        // The range has one step behind the deepest receiver, so that rounding never puts it behind the far plane, and
-        // two for snapping.
+        // The range has one step behind the deepest receiver, so that rounding never puts it behind
+        // the far plane, and two for snapping.
         let needed = (near - far).max(least) * DEPTH_STEPS / (DEPTH_STEPS - 4.0);
         let length = HeldSize::following(held.map(|held| held.length), needed);
         let range = length.step();
@@ -216,8 +219,9 @@ mod tests {
         assert!((rect.max() - margin).cmpge(request.max).all());
     }
 
-    /// Checks that, wherever the required rectangle is, the map rectangle holds it with its margin and starts on a
-    /// whole texel, and that its texel is at most one quantized size step (1.19 times) larger than requested.
+    /// Checks that, wherever the required rectangle is, the map rectangle holds it with its margin
+    /// and starts on a whole texel, and that its texel is at most one quantized size step (1.19
+    /// times) larger than requested.
     #[test]
     fn rects_hold_what_they_must_and_are_at_most_one_size_step_larger() {
         for step in 0..2000 {
@@ -234,8 +238,8 @@ mod tests {
         }
     }
 
-    /// Checks that a request that drifts by less than the spare room changes nothing at all, and that one that leaves
-    /// it moves the rectangle by whole texels.
+    /// Checks that a request that drifts by less than the spare room changes nothing at all, and
+    /// that one that leaves it moves the rectangle by whole texels.
     #[test]
     fn a_held_rect_stays_until_it_must_move() {
         let first = request(DVec2::new(-4.0, -3.0), DVec2::new(4.3, 3.1));

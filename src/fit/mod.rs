@@ -1,9 +1,10 @@
-//! Determines what each light's views must cover, as pure f64 mathematics that returns values and does not use wgpu.
+//! Determines what each light's views must cover, as pure f64 mathematics that returns values and
+//! does not use wgpu.
 //!
 //! ```text
 //! camera.rs       the engine's camera as half-spaces and depth along the view
 //! region.rs       exact vertices of (convex region ∩ box)
-//! axes.rs         world-fixed light axes, boxes in light space
+//! axes.rs         world-fixed light axes, light space and boxes in it
 //! footprint.rs    which part of a slice of the view a map rectangle covers
 //! size_step.rs    quantized size steps with hysteresis
 //! map_rect.rs     the rectangle of a map plane that a view covers, snapped to whole texels
@@ -21,7 +22,8 @@
 //! reached.rs      what a local light reaches
 //! nearest.rs      how near to a local light its near planes may be
 //! local.rs        the complete fit of a spot or point light's views; local_input.rs: its input
-//! view.rs         ShadowView: the value that maps are rendered and sampled with; view_rounding.rs: its rounding errors
+//! view.rs         ShadowView: the value that maps are rendered and sampled with
+//! view_rounding.rs  the rounding errors of a view
 //! ```
 
 mod axes;
@@ -50,7 +52,7 @@ mod view_rounding;
 mod visible;
 
 pub use axes::LightAxes;
-pub(crate) use axes::LightBox;
+pub(crate) use axes::{LightBox, LightSpace};
 pub(crate) use camera::CameraFrustum;
 pub use camera::CameraView;
 pub use caster_shape::CasterShape;
@@ -59,7 +61,7 @@ pub(crate) use directional_input::{FitInput, FitLimits, Region};
 pub use footprint::SliceReport;
 pub(crate) use local::{LocalFit, MAX_LOCAL_VIEWS};
 pub(crate) use local_input::LocalInput;
-pub(crate) use map_rect::MapRect;
+pub(crate) use map_rect::{LightSpaceBounds, MapRect};
 pub(crate) use reached::Reached;
 pub(crate) use region::HalfSpaces;
 pub use split::CascadeSplit;

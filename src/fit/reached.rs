@@ -7,7 +7,8 @@ use crate::fit::local_input::LocalInput;
 use crate::fit::nearest::nearest_for;
 use crate::fit::region::{HalfSpaces, Relation};
 
-/// Holds the casters and receivers within a light's reach, in lists that are reused from frame to frame.
+/// Holds the casters and receivers within a light's reach, in lists that are reused from frame to
+/// frame.
 #[derive(Debug, Default)]
 pub(crate) struct Reached {
     /// Holds the casters that can shadow something.
@@ -47,7 +48,7 @@ impl Reached {
             near(bounds).map(|part| ReachedCaster {
                 index,
                 bounds: part,
-                nearest: nearest_for(bounds, light, reach),
+                nearest: nearest_for(bounds, light, reach, input.map_size),
                 farthest_corner: farthest_corner(bounds, light).max_element(),
             })
         }));
@@ -90,8 +91,8 @@ impl Reached {
     }
 }
 
-/// Returns the distance from the light of the farthest point of a receiver that is seen and within `cone`, or the light's
-/// range where one is farther than that; 0 where nothing is seen.
+/// Returns the distance from the light of the farthest point of a receiver that is seen and within
+/// `cone`, or the light's range where one is farther than that; 0 where nothing is seen.
 pub(crate) fn farthest_seen(input: &LocalInput<'_>, light: DVec3, cone: &HalfSpaces) -> f64 {
     let mut farthest: f64 = 0.0;
     for seen in input.seen {
@@ -133,9 +134,9 @@ fn distance_squared(bounds: &Aabb, point: DVec3) -> f64 {
     nearest.distance_squared(point)
 }
 
-/// Returns whether a shadow of `caster` can fall on anything in `visible`. Shadows lead away from the light: on an axis
-/// on which the light is to one side of the caster, some receiver must be beyond the caster's near side. The flat wall
-/// of a room fails this.
+/// Returns whether a shadow of `caster` can fall on anything in `visible`. Shadows lead away from
+/// the light: on an axis on which the light is to one side of the caster, some receiver must be
+/// beyond the caster's near side. The flat wall of a room fails this.
 fn can_shadow(caster: &Aabb, visible: &(DVec3, DVec3), light: DVec3) -> bool {
     let (low, high) = (caster.min.as_dvec3(), caster.max.as_dvec3());
     !caster.is_empty()

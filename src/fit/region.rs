@@ -1,14 +1,15 @@
 //! Computes the exact vertices of a convex region cut by a box.
 //!
-//! The hull of (region ∩ box) is spanned by the box's edges inside the region and the region's edges inside the box.
-//! Each is a line clipped by half-spaces: no polygon lists, no allocation, and a region may be unbounded (an infinite
-//! far plane).
+//! The hull of (region ∩ box) is spanned by the box's edges inside the region and the region's
+//! edges inside the box. Each is a line clipped by half-spaces: no polygon lists, no allocation,
+//! and a region may be unbounded (an infinite far plane).
 
 use glam::DVec3;
 
 use crate::Aabb;
 
-/// Is the set of points with `normal · p + offset ≥ 0`; `normal` has unit length, so the left side is a distance.
+/// Is the set of points with `normal · p + offset ≥ 0`; `normal` has unit length, so the left side
+/// is a distance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct HalfSpace {
     pub normal: DVec3,
@@ -21,9 +22,9 @@ impl HalfSpace {
     }
 }
 
-/// Is the largest number of half-spaces of a region: the six sides of a box, or of a camera's clip volume, and its
-/// distance limit, with either the two ends of a slice and the four sides of a map rectangle, or the five sides of a
-/// local light's view.
+/// Is the largest number of half-spaces of a region: the six sides of a box, or of a camera's clip
+/// volume, and its distance limit, with either the two ends of a slice and the four sides of a map
+/// rectangle, or the five sides of a local light's view.
 const CAPACITY: usize = 13;
 
 /// Is an intersection of at most [`CAPACITY`] half-spaces. An empty list is all of space.
@@ -51,8 +52,8 @@ struct Segment {
 }
 
 impl Segment {
-    /// Keeps the part inside `plane` and returns true, or returns false if there is no such part. `slack` is a distance
-    /// by which rounding is forgiven.
+    /// Keeps the part inside `plane` and returns true, or returns false if there is no such part.
+    /// `slack` is a distance by which rounding is forgiven.
     fn clip(&mut self, plane: &HalfSpace, slack: f64) -> bool {
         let rate = plane.normal.dot(self.direction);
         let distance = plane.distance(self.point) + slack;
@@ -113,8 +114,8 @@ impl HalfSpaces {
         &self.planes[..self.count]
     }
 
-    /// Returns how `bounds` (not empty) relates to the region. A box near an edge of the region may count as across
-    /// although it is outside.
+    /// Returns how `bounds` (not empty) relates to the region. A box near an edge of the region may
+    /// count as across although it is outside.
     pub fn relation(&self, bounds: &Aabb) -> Relation {
         let center = (bounds.min.as_dvec3() + bounds.max.as_dvec3()) * 0.5;
         let half = (bounds.max.as_dvec3() - bounds.min.as_dvec3()) * 0.5;
@@ -132,8 +133,8 @@ impl HalfSpaces {
         relation
     }
 
-    /// Calls `visit` with points whose convex hull is the region's intersection with `bounds` (never fewer; duplicates
-    /// are possible). An empty intersection makes no call.
+    /// Calls `visit` with points whose convex hull is the region's intersection with `bounds`
+    /// (never fewer; duplicates are possible). An empty intersection makes no call.
     pub fn visit_vertices(&self, bounds: &Aabb, mut visit: impl FnMut(DVec3)) {
         if bounds.is_empty() {
             return;
@@ -147,7 +148,8 @@ impl HalfSpaces {
 
     fn visit_cut(&self, bounds: &Aabb, mut visit: impl FnMut(DVec3)) {
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
-        // This is a few ulps of the largest coordinate: an edge in a plane of the region must not be lost to rounding.
+        // This is a few ulps of the largest coordinate: an edge in a plane of the region must not
+        // be lost to rounding.
         let slack = 16.0 * f64::EPSILON * min.abs().max(max.abs()).max_element();
         // Points are clamped, so that a flat box yields points that are exactly as flat.
         let mut visit_segment = |segment: Segment| {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::fit::axes::LightBox;
+use crate::fit::axes::{LightBox, LightSpace};
 use crate::fit::camera::CameraFrustum;
 use crate::fit::directional_input::{FitInput, FitLimits, Region};
 use crate::fit::footprint::Slice;
@@ -12,17 +12,18 @@ use crate::fit::stability::Stability;
 use crate::fit::visible::{self, Seen, SeenBounds};
 use crate::{Aabb, ShadowError};
 
-/// Returns how finely f64 distinguishes positions in `required`, if that is fine enough for the map of a cascade.
+/// Returns how finely f64 distinguishes positions in `required`, if that is fine enough for the map
+/// of a cascade.
 pub(crate) fn checked_spacing(
     input: &FitInput<'_>,
     limits: &FitLimits,
     slice: Option<&Slice<'_>>,
     required: &LightBox,
 ) -> Result<Spacing, ShadowError> {
-    let spacing = Spacing::around(input.origin, required);
+    let spacing = Spacing::around(input.space.origin, required);
     let extent = || match slice {
-        // This is the extent of the slice and not of what is seen. That may be a corner of an object, which needs no
-        // finer texels than the rest of the image.
+        // This is the extent of the slice and not of what is seen. That may be a corner of an
+        // object, which needs no finer texels than the rest of the image.
         Some(slice) if limits.stability == Stability::TightFit => {
             let (depth_near, depth_far) = slice.between;
             let sphere = slice.camera.slice_sphere(depth_near, depth_far);
@@ -41,11 +42,16 @@ fn widest_given(input: &FitInput<'_>) -> f64 {
     let given = given
         .filter(|bounds| !bounds.is_empty())
         .fold(Aabb::EMPTY, |all, bounds| all.union(*bounds));
-    input.axes.light_box(&given, DVec3::ZERO).widest_side()
+    // Where the origin is does not matter for a side, and a distant one would cost its precision.
+    let space = LightSpace {
+        origin: DVec3::ZERO,
+        ..input.space
+    };
+    space.bounds(&given).widest_side()
 }
 
-/// Returns cascade `cascade` of the first camera's view. Returns `None` without a camera, or where its depths contain
-/// nothing. All cameras are divided at the same depths.
+/// Returns cascade `cascade` of the first camera's view. Returns `None` without a camera, or where
+/// its depths contain nothing. All cameras are divided at the same depths.
 pub(crate) fn camera_slice<'a>(
     input: &FitInput<'a>,
     limits: &FitLimits,
@@ -79,10 +85,10 @@ pub(crate) fn camera_slice<'a>(
     })
 }
 
-/// Returns the depths along the view that the spheres of a camera's slices must contain. The slices of a perspective
-/// camera end where its volume ends, so that only the projection changes them. An orthographic camera may be anywhere
-/// along its view, and its near and far planes do not bound the scene closely: its slices end where the visible
-/// receivers end, in steps that change rarely.
+/// Returns the depths along the view that the spheres of a camera's slices must contain. The slices
+/// of a perspective camera end where its volume ends, so that only the projection changes them. An
+/// orthographic camera may be anywhere along its view, and its near and far planes do not bound the
+/// scene closely: its slices end where the visible receivers end, in steps that change rarely.
 fn sphere_range(camera: &CameraFrustum, held_depths: Option<&HeldDepth>) -> (f64, f64) {
     let (near, far) = camera.depth_range();
     match held_depths {
@@ -93,7 +99,8 @@ fn sphere_range(camera: &CameraFrustum, held_depths: Option<&HeldDepth>) -> (f64
     }
 }
 
-/// Returns the depths along the view between which receivers are visible, in steps that change rarely.
+/// Returns the depths along the view between which receivers are visible, in steps that change
+/// rarely.
 pub(crate) fn held_depths(visible: &SeenBounds, held: Option<&HeldDepth>) -> Option<HeldDepth> {
     let (near, far) = (visible.depth_near, visible.depth_far);
     let least = f64::EPSILON.sqrt() * near.abs().max(far.abs()).max(f64::MIN_POSITIVE);
@@ -101,7 +108,8 @@ pub(crate) fn held_depths(visible: &SeenBounds, held: Option<&HeldDepth>) -> Opt
         .then(|| HeldDepth::fit(near, far, least, held))
 }
 
-/// Returns the light-space box of the receivers that cascade `cascade` is for, or `None` where there are none.
+/// Returns the light-space box of the receivers that cascade `cascade` is for, or `None` where
+/// there are none.
 pub(crate) fn required_box(
     input: &FitInput<'_>,
     limits: &FitLimits,
@@ -110,21 +118,19 @@ pub(crate) fn required_box(
     cascade: usize,
 ) -> Option<LightBox> {
     let mut required = LightBox::EMPTY;
-    let of_box = |bounds: &Aabb| input.axes.light_box(bounds, input.origin);
     match input.region {
         Region::Bounds(bounds) if cascade == 0 && !bounds.is_empty() => {
-            required = of_box(&bounds);
+            required = input.space.bounds(&bounds);
         }
         Region::Everything if cascade == 0 => {
             let receivers = input.receivers.iter();
-            receivers.for_each(|(bounds, _)| required.union(&of_box(bounds)));
+            receivers.for_each(|(bounds, _)| required.union(&input.space.bounds(bounds)));
         }
         Region::Bounds(_) | Region::Everything => {}
         Region::Cameras(cameras) => {
             let between = slice?.between;
-            let (axes, origin) = (&input.axes, input.origin);
             for camera in cameras.iter().enumerate() {
-                let seen = visible::light_box_between(camera, seen, between, axes, origin);
+                let seen = visible::light_box_between(camera, seen, between, &input.space);
                 if seen.is_empty() {
                     continue;
                 }
@@ -146,7 +152,7 @@ fn around_slice(
     seen: LightBox,
 ) -> LightBox {
     let sphere = camera.slice_sphere(between.0, between.1);
-    let center = input.axes.light_from_world * (input.origin + sphere.center_render);
+    let center = input.space.point(sphere.center_render);
     LightBox {
         min: (center - sphere.radius).with_z(seen.min.z),
         max: (center + sphere.radius).with_z(seen.max.z),

@@ -1,8 +1,9 @@
 //! Quantizes sizes to geometric steps, so that a fit changes its scale rarely, and then clearly.
 
-/// Lists the size steps from one power of two to the next: 2^(0/4), 2^(1/4), 2^(2/4), 2^(3/4), 2. A step is at most
-/// 1.19 times the size that it was requested for, 1.09 times on average; finer steps are tighter and change more often.
-/// They are a table, so that a scene scaled by a power of two has the same steps to the bit.
+/// Lists the size steps from one power of two to the next: 2^(0/4), 2^(1/4), 2^(2/4), 2^(3/4), 2. A
+/// step is at most 1.19 times the size that it was requested for, 1.09 times on average; finer
+/// steps are tighter and change more often. They are a table, so that a scene scaled by a power of
+/// two has the same steps to the bit.
 const STEPS: [f64; 5] = [
     1.0,
     1.189_207_115_002_721,
@@ -11,13 +12,14 @@ const STEPS: [f64; 5] = [
     2.0,
 ];
 
-/// Is how much room a smaller step must have to spare before a held step is left for it, so that a size that varies
-/// around a step does not change it every frame.
+/// Is how much room a smaller step must have to spare before a held step is left for it, so that a
+/// size that varies around a step does not change it every frame.
 const SHRINK_SLACK: f64 = 1.05;
 
 /// Returns the smallest size step that is at least `size` (positive and finite).
 pub(crate) fn size_step_up(size: f64) -> f64 {
-    // log2 may round to the next integer at a power of two; the octave below or above then serves as well.
+    // log2 may round to the next integer at a power of two; the octave below or above then serves
+    // as well.
     let octave = size.log2().floor().exp2();
     STEPS
         .iter()
@@ -26,24 +28,25 @@ pub(crate) fn size_step_up(size: f64) -> f64 {
         .unwrap_or(4.0 * octave)
 }
 
-/// Is the number of frames after which a size is reduced if it was larger than needed in all of them, by at least one
-/// size step. This is two seconds at sixty frames per second.
+/// Is the number of frames after which a size is reduced if it was larger than needed in all of
+/// them, by at least one size step. This is two seconds at sixty frames per second.
 const SHRINK_FRAMES: u32 = 120;
 
-/// Is the factor by which a size exceeds the need if it grows a second time within [`SHRINK_FRAMES`]: an octave, so
-/// that an object that moves away steadily changes the size once per octave.
+/// Is the factor by which a size exceeds the need if it grows a second time within
+/// [`SHRINK_FRAMES`]: an octave, so that an object that moves away steadily changes the size once
+/// per octave.
 const GROWTH_AHEAD: f64 = 2.0;
 
-/// Is the fraction of an earlier need below which the present need counts as that of another scene, after a cut of the
-/// camera for example. The size is then reduced in half the time.
+/// Is the fraction of an earlier need below which the present need counts as that of another scene,
+/// after a cut of the camera for example. The size is then reduced in half the time.
 const SUDDEN_DROP: f64 = 0.25;
 
-/// Is the fraction of a size below which a need makes the size useless, so that it is reduced at once: after a frame
-/// with far too large bounds, for example.
+/// Is the fraction of a size below which a need makes the size useless, so that it is reduced at
+/// once: after a frame with far too large bounds, for example.
 const USELESS: f64 = 0.125;
 
-/// Holds a quantized size from frame to frame. It grows at once where more is needed and shrinks late, so that a moving
-/// caster or a turning camera does not change the texels of static shadows.
+/// Holds a quantized size from frame to frame. It grows at once where more is needed and shrinks
+/// late, so that a moving caster or a turning camera does not change the texels of static shadows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct HeldSize {
     step: f64,
@@ -56,7 +59,8 @@ pub(crate) struct HeldSize {
 }
 
 impl HeldSize {
-    /// Returns a held size without history, at the smallest step that is at least `size` (positive and finite).
+    /// Returns a held size without history, at the smallest step that is at least `size` (positive
+    /// and finite).
     pub fn new(size: f64) -> Self {
         Self {
             step: size_step_up(size),
@@ -124,7 +128,8 @@ impl HeldSize {
         next
     }
 
-    /// Returns the held size of a frame that needs `size`. `held` is that of the frame before, if there was one.
+    /// Returns the held size of a frame that needs `size`. `held` is that of the frame before, if
+    /// there was one.
     pub fn following(held: Option<Self>, size: f64) -> Self {
         held.map_or_else(|| Self::new(size), |held| held.next(size))
     }
@@ -171,8 +176,8 @@ mod tests {
         );
     }
 
-    /// Checks that growth by a factor of 16 over 1000 frames changes the step at most once per octave, and that the
-    /// step may shrink and grow again in between where growth is slow.
+    /// Checks that growth by a factor of 16 over 1000 frames changes the step at most once per
+    /// octave, and that the step may shrink and grow again in between where growth is slow.
     #[test]
     fn steady_growth_changes_the_step_rarely() {
         let growing = (0..1000).map(|frame| 16.0_f64.powf(f64::from(frame) / 1000.0));

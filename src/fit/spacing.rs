@@ -1,28 +1,33 @@
-//! Determines how finely f64 distinguishes positions in absolute light space, and when that is too coarse for a map.
+//! Determines how finely f64 distinguishes positions in absolute light space, and when that is too
+//! coarse for a map.
 //!
-//! A map rectangle consists of whole texels of a grid that is fixed in the world, so its position is an absolute
-//! coordinate. Far from the world's origin f64 itself has coarse steps: 2⁻⁵² of a coordinate, 16 units at 10¹⁷. Casters
-//! and receivers go through one matrix whose linear part is exact, so these steps never move a shadow against what
-//! casts it; they move the map rectangle against both.
+//! A map rectangle consists of whole texels of a grid that is fixed in the world, so its position
+//! is an absolute coordinate. Far from the world's origin f64 itself has coarse steps: 2⁻⁵² of a
+//! coordinate, 16 units at 10¹⁷. Casters and receivers go through one matrix whose linear part is
+//! exact, so these steps never move a shadow against what casts it; they move the map rectangle
+//! against both.
 
 use glam::{DVec2, DVec3};
 
 use crate::ShadowError;
 use crate::fit::LightBox;
 
-/// Is the number of f64 steps by which a computed light coordinate may be off, and which a map rectangle covers in
-/// addition. In halves of a step: 1 for adding the origin, 3 for the row of the axes, 1 for the box around its middle,
-/// 1 for the rectangle's start, 1 for its end, 4 for the anchor of the view, which is 11, and so less than 6 steps.
+/// Is the number of f64 steps by which a computed light coordinate may be off, and which a map
+/// rectangle covers in addition. In halves of a step: 1 for adding the origin, 3 for the row of the
+/// axes, 1 for the box around its middle, 1 for the rectangle's start, 1 for its end, 4 for the
+/// anchor of the view, which is 11, and so less than 6 steps.
 const ERROR_STEPS: f64 = 8.0;
 
-/// Is the least width of a texel in f64 steps: a rectangle's start is then within an eighth of a texel of the whole
-/// texel that it represents, and its edges do not visibly shimmer as it moves.
+/// Is the least width of a texel in f64 steps: a rectangle's start is then within an eighth of a
+/// texel of the whole texel that it represents, and its edges do not visibly shimmer as it moves.
 const STEPS_PER_TEXEL: f64 = 4.0;
 
-/// Is the share of a texel by which rounding may move a lookup; the border of every map includes as much.
+/// Is the share of a texel by which rounding may move a lookup; the border of every map includes as
+/// much.
 const FREE_SHARE: f64 = 1.0 / 64.0;
 
-/// Is the least number of texels per side that a map has across the scene where the steps of f64 limit its texels.
+/// Is the least number of texels per side that a map has across the scene where the steps of f64
+/// limit its texels.
 const LEAST_TEXELS: u32 = 64;
 
 /// Measures the largest step of f64 among the coordinates that a map rectangle is computed from.
@@ -33,9 +38,11 @@ pub(crate) struct Spacing {
 }
 
 impl Spacing {
-    /// Returns the spacing for what is inside `required`, in a render space that begins at `origin`.
+    /// Returns the spacing for what is inside `required`, in a render space that begins at
+    /// `origin`.
     pub fn around(origin: DVec3, required: &LightBox) -> Self {
-        // The origin counts by itself, since it is added to render coordinates to get world coordinates.
+        // The origin counts by itself, since it is added to render coordinates to get world
+        // coordinates.
         Self {
             coordinate: origin.length().max(required.reach()),
         }
@@ -50,8 +57,8 @@ impl Spacing {
         ERROR_STEPS * self.step()
     }
 
-    /// Returns a box in light space, grown by all that its sides may be off, for the position of the map rectangle and
-    /// for their own.
+    /// Returns a box in light space, grown by all that its sides may be off, for the position of
+    /// the map rectangle and for their own.
     pub fn widest(self, bounds: &LightBox) -> LightBox {
         bounds.grown(self.error() + ERROR_STEPS * f64::EPSILON * bounds.reach())
     }
@@ -61,13 +68,14 @@ impl Spacing {
         STEPS_PER_TEXEL * self.step()
     }
 
-    /// Returns the least depth range of which a 64th, the room behind the deepest receiver, is no less than the error.
+    /// Returns the least depth range of which a 64th, the room behind the deepest receiver, is no
+    /// less than the error.
     pub fn least_depth(self) -> f64 {
         64.0 * self.error()
     }
 
-    /// Returns what a map rectangle must be requested to cover so that it covers `min..max` in spite of the error,
-    /// where that is more than the border of the map allows for anyway.
+    /// Returns what a map rectangle must be requested to cover so that it covers `min..max` in
+    /// spite of the error, where that is more than the border of the map allows for anyway.
     pub fn grown(
         self,
         (min, max): (DVec2, DVec2),
@@ -86,10 +94,10 @@ impl Spacing {
         (min - growth, max + growth)
     }
 
-    /// Returns the spacing if it is fine enough for a map of `map_size` texels over `extent` world units, or for
-    /// `texel_floor`, the finest texel that render space can resolve, where that is coarser. `distance` is from the
-    /// render origin, for the error. `extent` is called only where the floor does not settle the matter, as it does for
-    /// all but astronomical coordinates.
+    /// Returns the spacing if it is fine enough for a map of `map_size` texels over `extent` world
+    /// units, or for `texel_floor`, the finest texel that render space can resolve, where that is
+    /// coarser. `distance` is from the render origin, for the error. `extent` is called only where
+    /// the floor does not settle the matter, as it does for all but astronomical coordinates.
     pub fn checked(
         self,
         extent: impl FnOnce() -> f64,

@@ -9,33 +9,35 @@ pub(crate) const MAX_CASCADES: usize = 8;
 /// Selects how the covered depth is divided among the cascades of a directional light.
 /// [`DirectionalShadowDescriptor`](crate::DirectionalShadowDescriptor) defaults to `Logarithmic`.
 ///
-/// Depths are along the camera's view, in world units. They run from the nearest visible receiver (not the camera's
-/// near plane) to the farthest one or the camera's distance limit; under
-/// [`Stability::BoundingSphere`](crate::Stability::BoundingSphere) they run from the camera's near plane to its far
-/// plane or distance limit. A cascade that is too long for its map shows coarse texels at its near end. Numbers out of
-/// range make [`DirectionalShadow::new`](crate::DirectionalShadow::new) return [`ShadowError::OutOfRange`].
+/// Depths are along the camera's view, in world units. They run from the nearest visible receiver
+/// (not the camera's near plane) to the farthest one or the camera's distance limit; under
+/// [`Stability::BoundingSphere`](crate::Stability::BoundingSphere) they run from the camera's near
+/// plane to its far plane or distance limit. A cascade that is too long for its map shows coarse
+/// texels at its near end. Numbers out of range make
+/// [`DirectionalShadow::new`](crate::DirectionalShadow::new) return [`ShadowError::OutOfRange`].
 ///
-/// Sources: Engel 2006 (*Cascaded Shadow Maps*), Zhang et al. 2006 (*Parallel-Split Shadow Maps*, GPU Gems 3 ch. 10).
+/// Sources: Engel 2006 (*Cascaded Shadow Maps*), Zhang et al. 2006 (*Parallel-Split Shadow Maps*,
+/// GPU Gems 3 ch. 10).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum CascadeSplit<'a> {
-    /// Divides into equal depths, which gives too few texels per pixel near the camera and more than needed far from
-    /// it.
+    /// Divides into equal depths, which gives too few texels per pixel near the camera and more
+    /// than needed far from it.
     Uniform,
-    /// Divides in equal ratios, which gives equal texels per pixel everywhere. This is right whenever the near end is a
-    /// receiver.
+    /// Divides in equal ratios, which gives equal texels per pixel everywhere. This is right
+    /// whenever the near end is a receiver.
     Logarithmic,
-    /// Divides at `lambda` (0..=1) of the way from uniform to logarithmic, for scenes with a single object close to the
-    /// camera.
+    /// Divides at `lambda` (0..=1) of the way from uniform to logarithmic, for scenes with a single
+    /// object close to the camera.
     Practical {
         /// Is 0 for uniform and 1 for logarithmic.
         lambda: f32,
     },
-    /// Divides at given depths, for scenes with a known break, such as a cockpit before a landscape. A cascade that
-    /// ends before the nearest visible receiver stays empty.
+    /// Divides at given depths, for scenes with a known break, such as a cockpit before a
+    /// landscape. A cascade that ends before the nearest visible receiver stays empty.
     Explicit {
-        /// Holds the depths along the view, in world units, finite and growing, at which all cascades but the last end:
-        /// one fewer than there are cascades.
+        /// Holds the depths along the view, in world units, finite and growing, at which all
+        /// cascades but the last end: one fewer than there are cascades.
         ends: &'a [f32],
     },
 }
@@ -88,7 +90,8 @@ impl CascadeSplit<'_> {
 }
 
 impl SplitRule {
-    /// Returns the depth at which cascade `index` of `count` begins (`index == count` is the far end).
+    /// Returns the depth at which cascade `index` of `count` begins (`index == count` is the far
+    /// end).
     pub fn depth(self, index: usize, count: usize, near: f64, far: f64) -> f64 {
         if index == 0 {
             return near;
@@ -108,7 +111,8 @@ impl SplitRule {
         } else {
             uniform
         };
-        // At both limits of `lambda` one of the depths is returned unchanged, so that the other adds no rounding.
+        // At both limits of `lambda` one of the depths is returned unchanged, so that the other
+        // adds no rounding.
         if lambda == 1.0 {
             logarithmic
         } else if lambda == 0.0 {

@@ -3,15 +3,17 @@
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, Mat4, Vec2, Vec3};
 
 use crate::ShadowError;
-use crate::fit::LightAxes;
+use crate::fit::axes::{LightAxes, LightSpace};
 use crate::fit::map_rect::{LightSpaceBounds, MapRect};
 
-/// Describes one depth render: a cascade of a directional light, the map of a spot light, a face of a point light.
+/// Describes one depth render: a cascade of a directional light, the map of a spot light, a face of
+/// a point light.
 ///
-/// All matrices start from coordinates relative to [`ShadowView::anchor_render`], a point of render space inside the
-/// view (the light itself where the projection is perspective). Subtracting it first keeps f32 exact to the texel far
-/// from the origin. Lengths are in world units, and depths are reversed: near 1, far 0. A view is valid for the
-/// `origin` of the frame in which it was made; under another one its shadows are displaced.
+/// All matrices start from coordinates relative to [`ShadowView::anchor_render`], a point of render
+/// space inside the view (the light itself where the projection is perspective). Subtracting it
+/// first keeps f32 exact to the texel far from the origin. Lengths are in world units, and depths
+/// are reversed: near 1, far 0. A view is valid for the `origin` of the frame in which it was made;
+/// under another one its shadows are displaced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadowView {
     layer: u32,
@@ -20,23 +22,26 @@ pub struct ShadowView {
     /// Has reversed depth: near 1, far 0.
     clip_from_anchor: DMat4,
     pub(super) placement: ViewPlacement,
-    /// Is the largest f32 render coordinate, in world units, whose rounding all positions inside the view may have. For a
-    /// local light it is the light's own, since the rounding of what it shines on grows with the distance from it; and
-    /// half of `caster_reach` more.
+    /// Is the largest f32 render coordinate, in world units, whose rounding all positions inside
+    /// the view may have. For a local light it is the light's own, since the rounding of what it
+    /// shines on grows with the distance from it; and `caster_reach` more.
     pub(super) render_reach: f64,
-    /// Is the largest world distance, along an axis, of a corner of a drawn caster from a local light; 0 for a directional
-    /// one. A large triangle is displaced everywhere by what its corners are rounded by.
+    /// Is the largest world distance, along an axis, of a corner of a drawn caster from a local
+    /// light; 0 for a directional one. A large triangle is displaced everywhere by what its corners
+    /// are rounded by.
     pub(super) caster_reach: f64,
     /// States that the device clips depth to -1..1, as OpenGL does.
     pub(super) has_symmetric_clip_depth: bool,
-    /// Is the world distance from a local light up to which receivers are seen; infinite for a directional one.
+    /// Is the world distance from a local light up to which receivers are seen; infinite for a
+    /// directional one.
     pub(super) reach: f64,
-    /// Is the world distance beyond which a local light does not shine; infinite for a directional one.
+    /// Is the world distance beyond which a local light does not shine; infinite for a directional
+    /// one.
     range: f64,
 }
 
-/// Describes what a view covers, in absolute world terms: two views with equal placements render the same map of the
-/// same world, wherever render space begins.
+/// Describes what a view covers, in absolute world terms: two views with equal placements render
+/// the same map of the same world, wherever render space begins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum ViewPlacement {
     Orthographic {
@@ -76,7 +81,8 @@ pub(crate) struct PerspectiveView<'a> {
 }
 
 impl ViewPlacement {
-    /// Returns the world distance of the view's farthest corner, or of a local light, from the world's origin.
+    /// Returns the world distance of the view's farthest corner, or of a local light, from the
+    /// world's origin.
     fn reach_from_origin(&self) -> f64 {
         match self {
             Self::Orthographic { bounds, .. } => bounds.bounds().reach(),
@@ -86,11 +92,11 @@ impl ViewPlacement {
 }
 
 impl ShadowView {
-    /// Returns the orthographic view over light-space bounds, for an engine whose render space begins at `origin`.
+    /// Returns the orthographic view over light-space bounds, for an engine whose render space
+    /// begins at `origin`.
     pub(crate) fn orthographic(
-        axes: &LightAxes,
+        &LightSpace { axes, origin }: &LightSpace,
         bounds: &LightSpaceBounds,
-        origin: DVec3,
         layer: u32,
     ) -> Self {
         let (rect, depth) = (&bounds.rect, &bounds.depth);
@@ -99,7 +105,8 @@ impl ShadowView {
         let world_from_light = light_from_world.transpose();
         let middle = (rect.min + size * 0.5).extend((depth.near + depth.far) * 0.5);
         let anchor_render = (world_from_light * middle - origin).as_vec3();
-        // The anchor is rounded to f32; everything after it starts from the rounded one, so nothing is lost.
+        // The anchor is rounded to f32; everything after it starts from the rounded one, so nothing
+        // is lost.
         let anchor_light = light_from_world * (anchor_render.as_dvec3() + origin);
         let scale = DVec3::new(2.0 / size.x, 2.0 / size.y, 1.0 / depth.length());
         let offset = (anchor_light - rect.min.extend(depth.far)) * scale;
@@ -117,7 +124,7 @@ impl ShadowView {
             anchor_render,
             clip_from_anchor,
             placement: ViewPlacement::Orthographic {
-                axes: *axes,
+                axes,
                 bounds: *bounds,
             },
             render_reach: f64::from(anchor_render.abs().max_element()) + half.length(),
@@ -143,7 +150,8 @@ impl ShadowView {
         } = local;
         let anchor_render = (position_world - origin).as_vec3();
         let size = rect.max() - rect.min;
-        // clip = 2 (tangent - min) / size * w - w, with w = -z and tangent * w = x or y; depth * w = near.
+        // clip = 2 (tangent - min) / size * w - w, with w = -z and tangent * w = x or y; depth * w
+        // = near.
         let scale = 2.0 / size;
         let shift = DVec2::ONE + rect.min * scale;
         let clip_from_light = DMat4::from_cols(
@@ -177,7 +185,8 @@ impl ShadowView {
     pub(crate) fn rebased(&self, origin: DVec3) -> Self {
         match &self.placement {
             ViewPlacement::Orthographic { axes, bounds } => {
-                Self::orthographic(axes, bounds, origin, self.layer)
+                let axes = *axes;
+                Self::orthographic(&LightSpace { axes, origin }, bounds, self.layer)
             }
             ViewPlacement::Perspective { position_world, .. } => {
                 let anchor_render = (*position_world - origin).as_vec3();
@@ -190,8 +199,8 @@ impl ShadowView {
         }
     }
 
-    /// Returns the view if its matrices and its position can be expressed in f32. The fit has checked whether f64
-    /// suffices for the position.
+    /// Returns the view if its matrices and its position can be expressed in f32. The fit has
+    /// checked whether f64 suffices for the position.
     pub(crate) fn checked(self) -> Result<Self, ShadowError> {
         // The square must fit as well: matrices hold reciprocals and products of these.
         let largest = f64::from(f32::MAX).sqrt();
@@ -236,20 +245,23 @@ impl ShadowView {
         self.anchor_render
     }
 
-    /// Returns the matrix to clip space (z in [0, 1], near 1, far 0) from `position_render - anchor_render`.
+    /// Returns the matrix to clip space (z in [0, 1], near 1, far 0) from `position_render -
+    /// anchor_render`.
     pub fn clip_from_anchor(&self) -> Mat4 {
         self.clip_from_anchor.as_mat4()
     }
 
-    /// Returns the matrix to clip space from render space. Prefer [`ShadowView::clip_from_anchor`] where coordinates
-    /// are large: this one shifts shadows by the rounding of large f32 coordinates.
+    /// Returns the matrix to clip space from render space. Prefer [`ShadowView::clip_from_anchor`]
+    /// where coordinates are large: this one shifts shadows by the rounding of large f32
+    /// coordinates.
     pub fn clip_from_render(&self) -> Mat4 {
         let shift = DMat4::from_translation(-self.anchor_render.as_dvec3());
         (self.clip_from_anchor * shift).as_mat4()
     }
 
-    /// Returns the world size of a texel along the map's x and y: constant for an orthographic view. For a perspective one
-    /// it is that at the farthest receiver that is seen within the light's range, where texels are largest.
+    /// Returns the world size of a texel along the map's x and y: constant for an orthographic
+    /// view. For a perspective one it is that at the farthest receiver that is seen within the
+    /// light's range, where texels are largest.
     pub fn texel_size_world(&self) -> Vec2 {
         match &self.placement {
             ViewPlacement::Orthographic { bounds, .. } => bounds.rect.texel.as_vec2(),
@@ -257,8 +269,8 @@ impl ShadowView {
         }
     }
 
-    /// Returns the world distance from the near plane to the far plane, or for a local light to the farthest receiver that
-    /// is seen within its range, rounded up to a quantized size step.
+    /// Returns the world distance from the near plane to the far plane, or for a local light to the
+    /// farthest receiver that is seen within its range, rounded up to a quantized size step.
     pub fn depth_range_world(&self) -> f32 {
         match &self.placement {
             ViewPlacement::Orthographic { bounds, .. } => bounds.depth.length() as f32,
@@ -266,8 +278,9 @@ impl ShadowView {
         }
     }
 
-    /// Returns the position of the first texel in a grid of such texels that is fixed in the world (for a local light
-    /// around it), modulo 65536: x in the low half, y, which grows downward, in the high.
+    /// Returns the position of the first texel in a grid of such texels that is fixed in the world
+    /// (for a local light around it), modulo 65536: x in the low half, y, which grows downward, in
+    /// the high.
     pub(crate) fn world_grid(&self) -> u32 {
         let rect = match &self.placement {
             ViewPlacement::Orthographic { bounds, .. } => &bounds.rect,
@@ -282,8 +295,8 @@ impl ShadowView {
         &self.placement
     }
 
-    /// Returns the matrix to texel coordinates (origin top left, centres at halves), ndc depth and w, from
-    /// anchor-relative coordinates.
+    /// Returns the matrix to texel coordinates (origin top left, centres at halves), ndc depth and
+    /// w, from anchor-relative coordinates.
     pub(crate) fn texel_from_anchor(&self) -> DMat4 {
         let half = f64::from(self.map_size) * 0.5;
         let texel_from_clip = DMat4::from_cols(
@@ -295,18 +308,20 @@ impl ShadowView {
         texel_from_clip * self.clip_from_anchor
     }
 
-    /// Returns the world distance from a local light up to which receivers are seen and beyond which casters are left out;
-    /// infinite for a directional one.
+    /// Returns the world distance from a local light up to which receivers are seen and beyond
+    /// which casters are left out; infinite for a directional one.
     pub(crate) const fn reach_world(&self) -> f64 {
         self.reach
     }
 
-    /// Returns the world distance beyond which a local light does not shine; infinite for a directional one.
+    /// Returns the world distance beyond which a local light does not shine; infinite for a
+    /// directional one.
     pub(crate) const fn range_world(&self) -> f64 {
         self.range
     }
 
-    /// Returns the world distance from a local light up to which receivers are seen; 0 for a directional one.
+    /// Returns the world distance from a local light up to which receivers are seen; 0 for a
+    /// directional one.
     pub(super) fn depth_range_from_light(&self) -> f64 {
         match &self.placement {
             ViewPlacement::Orthographic { .. } => 0.0,
@@ -323,10 +338,11 @@ impl ShadowView {
     }
 }
 
-/// Returns the render coordinate whose rounding all positions inside a local light's view may have, however close to the
-/// light. It is the light's own, and half of the distance of the farthest corner of a caster: a triangle is displaced, at
-/// its middle as well, by what its corners are rounded by, in the vertex stage and where it is clipped at the sides of the
-/// map. Half, since `4u` serves the roundings of caster and receiver, and receivers have no far corners.
+/// Returns the render coordinate whose rounding all positions inside a local light's view may have,
+/// however close to the light. It is the light's own, and the distance of the farthest corner of a
+/// caster: a triangle is displaced, at its middle as well, by what its corners are rounded by. That
+/// comes to `2u` of their distance in the vertex stage, which adds two products of that size, and
+/// to as much where the triangle is clipped at the sides of the map.
 fn local_render_reach(anchor_render: Vec3, caster_reach: f64) -> f64 {
-    f64::from(anchor_render.abs().max_element()) + 0.5 * caster_reach
+    f64::from(anchor_render.abs().max_element()) + caster_reach
 }

@@ -1,9 +1,10 @@
-//! Finds what each camera sees of the receivers, once a frame; the result is then divided among the cascades.
+//! Finds what each camera sees of the receivers, once a frame; the result is then divided among the
+//! cascades.
 
 use glam::DVec3;
 
 use crate::Aabb;
-use crate::fit::axes::{LightAxes, LightBox};
+use crate::fit::axes::{LightBox, LightSpace};
 use crate::fit::camera::CameraFrustum;
 use crate::fit::region::{HalfSpaces, Relation};
 
@@ -31,8 +32,8 @@ impl SeenReceiver {
         }
     }
 
-    /// Returns the part of that side of the bounds, across `axis`, that faces the light; `None` where no side does or
-    /// nothing of it counts.
+    /// Returns the part of that side of the bounds, across `axis`, that faces the light; `None`
+    /// where no side does or nothing of it counts.
     pub fn lit_side(&self, axis: usize, toward_light: DVec3) -> Option<(DVec3, DVec3)> {
         let (mut min, mut max) = (self.min, self.max);
         if toward_light[axis] > 0.0 && max[axis] == f64::from(self.bounds.max[axis]) {
@@ -54,9 +55,22 @@ pub(crate) struct Seen {
     bounds: Aabb,
     /// States that all of it is in the camera's volume.
     wholly: bool,
-    /// Is the depth along the view at which the part that is seen begins; the next field is the depth at which it ends.
+    /// Is the depth along the view at which the part that is seen begins; the next field is the
+    /// depth at which it ends.
     depth_near: f64,
     depth_far: f64,
+}
+
+impl Seen {
+    /// Returns whether the camera at `index` sees something of it between two depths.
+    fn reaches(&self, index: usize, (depth_near, depth_far): (f64, f64)) -> bool {
+        self.camera == index && self.depth_near <= depth_far && self.depth_far >= depth_near
+    }
+
+    /// Returns whether all of it is seen, between the two depths.
+    fn is_within(&self, (depth_near, depth_far): (f64, f64)) -> bool {
+        self.wholly && self.depth_near >= depth_near && self.depth_far <= depth_far
+    }
 }
 
 /// Holds the bounds of all that is seen, in render space and in depth along the view.
@@ -99,7 +113,8 @@ impl SeenBounds {
 pub(crate) struct Receivers<'a> {
     /// Holds the bounds in render space.
     pub bounds: &'a [Aabb],
-    /// Holds, for each of them, the index of the caster whose surface it is, or `None` where it is not a caster's.
+    /// Holds, for each of them, the index of the caster whose surface it is, or `None` where it is
+    /// not a caster's.
     pub casters: &'a [Option<u32>],
 }
 
@@ -121,8 +136,8 @@ pub(crate) struct SeenLists {
 }
 
 impl SeenLists {
-    /// Fills the lists with the receivers that each of the cameras sees a part of, and returns the bounds of what they
-    /// see together.
+    /// Fills the lists with the receivers that each of the cameras sees a part of, and returns the
+    /// bounds of what they see together.
     pub fn find(&mut self, cameras: &[CameraFrustum], receivers: Receivers<'_>) -> SeenBounds {
         self.seen.clear();
         self.parts.clear();
@@ -188,56 +203,43 @@ impl SeenLists {
     }
 }
 
-/// Returns the light-space box of what the camera at `index` sees between two depths; it is empty if that is nothing.
+/// Returns the light-space box of what the camera at `index` sees between two depths; it is empty
+/// if that is nothing.
 pub(crate) fn light_box_between(
     (index, camera): (usize, &CameraFrustum),
     seen: &[Seen],
-    (depth_near, depth_far): (f64, f64),
-    axes: &LightAxes,
-    origin: DVec3,
+    between: (f64, f64),
+    space: &LightSpace,
 ) -> LightBox {
-    let slice = camera.slice(depth_near, depth_far);
+    let slice = camera.slice(between.0, between.1);
     let mut covered = LightBox::EMPTY;
-    let overlapping = seen.iter().filter(|part| {
-        part.camera == index && part.depth_near <= depth_far && part.depth_far >= depth_near
-    });
-    for part in overlapping {
-        if part.wholly && part.depth_near >= depth_near && part.depth_far <= depth_far {
-            covered.union(&axes.light_box(&part.bounds, origin));
+    for part in seen.iter().filter(|part| part.reaches(index, between)) {
+        if part.is_within(between) {
+            covered.union(&space.bounds(&part.bounds));
         } else {
-            slice.visit_vertices(&part.bounds, |vertex| {
-                covered.include(axes.light_from_world * (origin + vertex));
-            });
+            slice.visit_vertices(&part.bounds, |vertex| covered.include(space.point(vertex)));
         }
     }
     covered
 }
 
-/// Calls `visit` with points whose convex hull is, for each part that the camera at `index` sees between two depths,
-/// its intersection with `over`, the sides of a rectangle across the light.
+/// Calls `visit` with points whose convex hull is, for each part that the camera at `index` sees
+/// between two depths, its intersection with `over`, the sides of a rectangle across the light.
 pub(crate) fn visit_between(
     (index, camera): (usize, &CameraFrustum),
     seen: &[Seen],
-    (depth_near, depth_far): (f64, f64),
+    between: (f64, f64),
     over: &HalfSpaces,
     mut visit: impl FnMut(DVec3),
 ) {
-    let slice = camera.slice(depth_near, depth_far);
-    let mut region = slice;
-    for plane in over.as_slice() {
-        region.push(*plane);
-    }
-    let overlapping = seen.iter().filter(|part| {
-        part.camera == index && part.depth_near <= depth_far && part.depth_far >= depth_near
-    });
-    for part in overlapping {
-        if over.relation(&part.bounds) == Relation::Outside {
-            continue;
-        }
-        if part.wholly && part.depth_near >= depth_near && part.depth_far <= depth_far {
-            over.visit_vertices(&part.bounds, &mut visit);
+    let mut region = camera.slice(between.0, between.1);
+    over.as_slice().iter().for_each(|side| region.push(*side));
+    for part in seen.iter().filter(|part| part.reaches(index, between)) {
+        let part_region = if part.is_within(between) {
+            over
         } else {
-            region.visit_vertices(&part.bounds, &mut visit);
-        }
+            &region
+        };
+        part_region.visit_vertices(&part.bounds, &mut visit);
     }
 }

@@ -5,9 +5,10 @@ use glam::Vec3;
 use crate::cast::{FrameCasters, ViewDraws};
 use crate::check;
 use crate::fit::{
-    DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, MAX_CASCADES, Receivers, Region,
+    DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, LightSpace, MAX_CASCADES,
+    Receivers, Region,
 };
-use crate::light::distance_limit::distance_limit;
+use crate::light::distance_limit::{distance_limit, shadowed_texels};
 use crate::light::large_triangles::depth_reach;
 use crate::receive::{
     LayerState, MapsFrame, Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, ShadowReport,
@@ -17,40 +18,44 @@ use crate::{
     Bias, CascadeSplit, DepthFormat, Filter, ShadowError, ShadowFrame, ShadowView, Stability,
 };
 
-/// Describes what a [`DirectionalShadow`] is made of. [`DirectionalShadow::new`] returns [`ShadowError::OutOfRange`]
-/// for values outside the ranges given here, and [`ShadowError::OverDeviceLimit`] for those beyond the device's limits.
+/// Describes what a [`DirectionalShadow`] is made of. [`DirectionalShadow::new`] returns
+/// [`ShadowError::OutOfRange`] for values outside the ranges given here, and
+/// [`ShadowError::OverDeviceLimit`] for those beyond the device's limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectionalShadowDescriptor<'a> {
-    /// Is the label from which all wgpu objects of the light derive theirs; "directional shadow" if `None`, the
-    /// default.
+    /// Is the label from which all wgpu objects of the light derive theirs; "directional shadow" if
+    /// `None`, the default.
     pub label: wgpu::Label<'a>,
-    /// Is the number of texels per side of each cascade's map: from 1 to the device's `max_texture_dimension_2d`. The
-    /// default is 2048. Cost and memory grow with its square; the blur and the displacement of an edge shrink in
-    /// proportion to it.
+    /// Is the number of texels per side of each cascade's map: from 1 to the device's
+    /// `max_texture_dimension_2d`. The default is 2048. Cost and memory grow with its square; the
+    /// blur and the displacement of an edge shrink in proportion to it.
     pub map_size: u32,
-    /// Is the number of cascades: 1..=8, and no more than the device's `max_texture_array_layers`. The default is 1,
-    /// which suits a scene that is as deep as it is wide; a view to the horizon needs 3 or 4. With too few, texels are
-    /// coarse near the camera.
+    /// Is the number of cascades: 1..=8, and no more than the device's `max_texture_array_layers`.
+    /// The default is 1, which suits a scene that is as deep as it is wide; a view to the horizon
+    /// needs 3 or 4. With too few, texels are coarse near the camera.
     pub cascades: u32,
     /// Selects where one cascade ends and the next begins. The default is logarithmic.
     pub split: CascadeSplit<'a>,
-    /// Selects how a map is sampled. The default is that of [`Filter`]. Filters for point lights only are refused, and
-    /// the light size of [`Filter::Pcss`] and [`Filter::PcssRotated`] is an angular diameter below π.
+    /// Selects how a map is sampled. The default is that of [`Filter`]. Filters for point lights
+    /// only are refused, and the light size of [`Filter::Pcss`] and [`Filter::PcssRotated`] is an
+    /// angular diameter below π.
     pub filter: Filter,
     /// Selects how receivers are kept from shadowing themselves. The default is [`Bias::Auto`].
     pub bias: Bias,
-    /// Is the fraction of a cascade's width, 0..=0.5, over which it blends into the next one toward its border. The
-    /// default is 0: a cascade ends where its map ends, and the edges of shadows become wider there at once. A value of
-    /// 0.1 hides that; two maps are sampled inside the blended border. Too large a value costs lookups and lets the
-    /// coarser map blur what the finer one resolves.
+    /// Is the fraction of a cascade's width, 0..=0.5, over which it blends into the next one toward
+    /// its border. The default is 0: a cascade ends where its map ends, and the edges of shadows
+    /// become wider there at once. A value of 0.1 hides that; two maps are sampled inside the
+    /// blended border. Too large a value costs lookups and lets the coarser map blur what the finer
+    /// one resolves.
     pub blend: f32,
-    /// Is the fraction of [`CameraView::max_distance`](crate::CameraView::max_distance), in 0..=1, over which shadows
-    /// fade to light before they end there. The default is 0: they end at once. Without a distance it has no effect.
+    /// Is the fraction of [`CameraView::max_distance`](crate::CameraView::max_distance), in 0..=1,
+    /// over which shadows fade to light before they end there. The default is 0: they end at once.
+    /// Where no such end is common to all cameras it has no effect.
     pub fade: f32,
     /// Selects what may change the extent of a cascade. The default is [`Stability::TightFit`].
     pub stability: Stability,
-    /// Selects how the maps store depths. The default is [`DepthFormat::Float32`]. `Unorm16` halves their memory; the
-    /// casters need pipelines for it
+    /// Selects how the maps store depths. The default is [`DepthFormat::Float32`]. `Unorm16` halves
+    /// their memory; the casters need pipelines for it
     /// ([`CasterPipelineDescriptor::depth_formats`](crate::caster::CasterPipelineDescriptor::depth_formats)).
     pub depth_format: DepthFormat,
 }
@@ -73,8 +78,8 @@ impl Default for DirectionalShadowDescriptor<'_> {
 }
 
 impl DirectionalShadowDescriptor<'_> {
-    /// Describes the cheapest light whose shadow edges are smooth: one gather per lookup and a quarter of the default's
-    /// texels, with 1.5 times the default's error.
+    /// Describes the cheapest light whose shadow edges are smooth: one gather per lookup and a
+    /// quarter of the default's texels, with 1.5 times the default's error.
     pub const CHEAP: Self = Self {
         label: None,
         map_size: 1024,
@@ -88,9 +93,10 @@ impl DirectionalShadowDescriptor<'_> {
         depth_format: DepthFormat::Float32,
     };
 
-    /// Describes a more accurate light: nine gathers per lookup and four times the default's texels, with 0.7 times the
-    /// default's error. `cargo bench --bench speed_vs_error` measures this one, the default and [`CHEAP`](Self::CHEAP);
-    /// no measured configuration of the same cost has a smaller error than any of the three.
+    /// Describes a more accurate light: nine gathers per lookup and four times the default's
+    /// texels, with 0.7 times the default's error. `cargo bench --bench speed_vs_error` measures
+    /// this one, the default and [`CHEAP`](Self::CHEAP); no measured configuration of the same cost
+    /// has a smaller error than any of the three.
     pub const ACCURATE: Self = Self {
         map_size: 4096,
         filter: Filter::Tent5 { sharpness: 4.0 },
@@ -101,13 +107,13 @@ impl DirectionalShadowDescriptor<'_> {
 /// Describes a light that is so far away that its rays are parallel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectionalLight {
-    /// Is the direction in which the light shines (from the sun to the ground), in world axes, finite and of any length
-    /// but zero.
+    /// Is the direction in which the light shines (from the sun to the ground), in world axes,
+    /// finite and of any length but zero.
     pub direction: Vec3,
-    /// Is the world's up axis, finite and of any length but zero. It orients the map: the map's x axis is horizontal,
-    /// so that level ground under a low sun fills the map. Where the light's direction is within 26° of that axis, the
-    /// map follows the world's other axes instead. [`DirectionalLight::new`] sets +Y. A wrong axis costs resolution
-    /// under a low sun.
+    /// Is the world's up axis, finite and of any length but zero. It orients the map: the map's x
+    /// axis is horizontal, so that level ground under a low sun fills the map. Where the light's
+    /// direction is within 26° of that axis, the map follows the world's other axes instead.
+    /// [`DirectionalLight::new`] sets +Y. A wrong axis costs resolution under a low sun.
     pub up: Vec3,
 }
 
@@ -129,8 +135,8 @@ impl DirectionalLight {
     }
 }
 
-/// Renders the shadows of a directional light. Owns a depth texture with one layer per cascade, the uniforms of its
-/// views, and the state that decides what each frame must draw.
+/// Renders the shadows of a directional light. Owns a depth texture with one layer per cascade, the
+/// uniforms of its views, and the state that decides what each frame must draw.
 #[derive(Debug)]
 pub struct DirectionalShadow {
     maps: ShadowMaps,
@@ -140,11 +146,12 @@ pub struct DirectionalShadow {
 }
 
 impl DirectionalShadow {
-    /// Creates the light's texture and buffers. Until the first [`DirectionalShadow::record`], every surface is lit.
+    /// Creates the light's texture and buffers. Until the first [`DirectionalShadow::record`],
+    /// every surface is lit.
     ///
     /// # Errors
-    /// Returns [`ShadowError`] for a descriptor with a value out of range, and for a device whose limits or memory do
-    /// not suffice or that is lost.
+    /// Returns [`ShadowError`] for a descriptor with a value out of range, and for a device whose
+    /// limits or memory do not suffice or that is lost.
     pub fn new(
         device: &wgpu::Device,
         descriptor: &DirectionalShadowDescriptor<'_>,
@@ -209,17 +216,19 @@ impl DirectionalShadow {
         })
     }
 
-    /// Fits the cascades to the frame, culls the casters, writes the uniforms, and records the depth passes that are
-    /// needed.
+    /// Fits the cascades to the frame, culls the casters, writes the uniforms, and records the
+    /// depth passes that are needed.
     ///
-    /// The encoder must be submitted before any work that samples these shadows, and encoders must be submitted in the
-    /// order in which they were recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)).
+    /// The encoder must be submitted before any work that samples these shadows, and encoders must
+    /// be submitted in the order in which they were recorded ([what a kept map relies
+    /// on](crate#what-a-kept-map-relies-on)).
     ///
     /// # Errors
-    /// Returns [`ShadowError`] for a light whose vectors are not finite or are zero, for a camera without a finite far
-    /// end under [`Stability::BoundingSphere`], for a view that cannot be represented, for casters whose pipelines do
-    /// not fit the light, and for a device that is lost or out of memory. Nothing is recorded then, and the maps of the
-    /// last successful frame remain.
+    /// Returns [`ShadowError`] for a light whose vectors are not finite or are zero, for a camera
+    /// without a finite far end under [`Stability::BoundingSphere`], for a view that cannot be
+    /// represented, for casters whose pipelines do not fit the light, and for a device that is lost
+    /// or out of memory. Nothing is recorded then, and the maps of the last successful frame
+    /// remain.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -229,8 +238,10 @@ impl DirectionalShadow {
         let axes = light.axes()?;
         self.check_distances(frame)?;
         let input = FitInput {
-            axes,
-            origin: frame.origin,
+            space: LightSpace {
+                axes,
+                origin: frame.origin,
+            },
             region: frame.region,
             casters: frame.casters.bounds,
             shapes: frame.casters.shapes,
@@ -242,8 +253,10 @@ impl DirectionalShadow {
         let fit = self.fit.fit(&input, &self.limits, &mut self.scratch)?;
         let views = self.drawn_views(&fit, &input, &frame.casters)?;
         let limit = distance_limit(frame.region, self.maps.sampling().fade);
-        let layers: [_; MAX_CASCADES] = std::array::from_fn(|layer| {
-            LayerState::directional(layer as u32, limit, fit.slices[layer])
+        let layers: [_; MAX_CASCADES] = std::array::from_fn(|layer| LayerState {
+            limit,
+            shadowed_texels: shadowed_texels(&input, fit.light_bounds[layer].as_ref()),
+            ..LayerState::directional(layer as u32, fit.slices[layer])
         });
         let maps_frame = MapsFrame {
             views,
@@ -256,7 +269,8 @@ impl DirectionalShadow {
         Ok(report)
     }
 
-    /// Checks that the slices of all cameras end at a finite depth where the fit covers the whole of them.
+    /// Checks that the slices of all cameras end at a finite depth where the fit covers the whole
+    /// of them.
     fn check_distances(&self, frame: &ShadowFrame<'_>) -> Result<(), ShadowError> {
         let Region::Cameras(cameras) = frame.region else {
             return Ok(());
@@ -288,8 +302,7 @@ impl DirectionalShadow {
                 self.maps.return_list(drawn);
                 continue;
             };
-            let view =
-                ShadowView::orthographic(&input.axes, light_bounds, input.origin, cascade as u32);
+            let view = ShadowView::orthographic(&input.space, light_bounds, cascade as u32);
             let view = view.checked()?;
             let reach = depth_reach(&view, casters, &drawn);
             views.push(ViewDraws::new(view.over_depths_from(reach), drawn));
@@ -302,14 +315,15 @@ impl DirectionalShadow {
         &self.maps
     }
 
-    /// Discards the extents of earlier frames. Without this call, extents grow at once and shrink only after some time,
-    /// so that moving objects do not change the texels of static ones. Call it where the camera cuts to another scene.
+    /// Discards the extents of earlier frames. Without this call, extents grow at once and shrink
+    /// only after some time, so that moving objects do not change the texels of static ones. Call
+    /// it where the camera cuts to another scene.
     pub fn reset_history(&mut self) {
         self.fit = DirectionalFit::default();
     }
 
-    /// Declares the contents of the maps invalid ([what a kept map relies on](crate#what-a-kept-map-relies-on)): the
-    /// next frame draws every view.
+    /// Declares the contents of the maps invalid ([what a kept map relies
+    /// on](crate#what-a-kept-map-relies-on)): the next frame draws every view.
     pub fn invalidate(&mut self) {
         self.maps.invalidate();
     }

@@ -1,16 +1,16 @@
-//! Records spot and point lights, alone or in a pool: fits their perspective views, selects those that are drawn in a
-//! frame, and passes them to the maps.
+//! Records spot and point lights, alone or in a pool: fits their perspective views, selects those
+//! that are drawn in a frame, and passes them to the maps.
 
 use glam::DVec3;
 
 use crate::cast::ViewDraws;
 use crate::fit::{LightAxes, LocalFit, LocalInput, MAX_LOCAL_VIEWS, PerspectiveView, Reached};
 use crate::light::distance_limit::range_limit;
-use crate::receive::{LayerState, MapsFrame, ShadowMaps, ShadowMapsDescriptor};
+use crate::receive::{ALL_TEXELS, LayerState, MapsFrame, ShadowMaps, ShadowMapsDescriptor};
 use crate::{ShadowError, ShadowFrame, ShadowView, report::ShadowReport};
 
-/// Holds spot or point lights in the slots of one set of maps. A single light has one slot; a pool has as many as its
-/// capacity.
+/// Holds spot or point lights in the slots of one set of maps. A single light has one slot; a pool
+/// has as many as its capacity.
 #[derive(Debug)]
 pub(crate) struct LocalLights {
     maps: ShadowMaps,
@@ -28,13 +28,14 @@ struct SlotState {
     fit: LocalFit,
     /// Counts the frames for which a needed refresh has been deferred.
     waited: u32,
-    /// States that the slot's layers have been drawn, or were found to need no drawing, since the light was inserted.
+    /// States that the slot's layers have been drawn, or were found to need no drawing, since the
+    /// light was inserted.
     has_map: bool,
     /// Holds the views that the layers were last refreshed with.
     views: [Option<ShadowView>; MAX_LOCAL_VIEWS],
     /// Is the position that the light had then.
     position_world: DVec3,
-    /// How far it shone then.
+    /// Is the range that the light had then, in world units.
     range: f32,
 }
 
@@ -67,8 +68,8 @@ struct Candidate {
     refreshed: bool,
 }
 
-/// Is the least importance that a light with an importance above 0 counts for, as a fraction of the greatest in the
-/// frame.
+/// Is the least importance that a light with an importance above 0 counts for, as a fraction of the
+/// greatest in the frame.
 const LEAST_SHARE_OF_IMPORTANCE: f64 = 1.0 / 4096.0;
 
 impl LocalLights {
@@ -99,9 +100,9 @@ impl LocalLights {
 
     /// Discards the extents of earlier frames.
     pub fn reset_history(&mut self) {
-        self.slots
-            .iter_mut()
-            .for_each(|slot| slot.fit.reset_history());
+        for slot in &mut self.slots {
+            slot.fit = LocalFit::default();
+        }
     }
 
     /// Resets the state of a slot, whose next light then has no map until it is drawn.
@@ -109,8 +110,8 @@ impl LocalLights {
         self.slots[slot as usize] = SlotState::default();
     }
 
-    /// Fits and culls `lights`, uploads their uniforms and records their depth passes. `max_views` is the largest
-    /// number of depth passes to record; `None` sets no limit.
+    /// Fits and culls `lights`, uploads their uniforms and records their depth passes. `max_views`
+    /// is the largest number of depth passes to record; `None` sets no limit.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -134,7 +135,8 @@ impl LocalLights {
         for (light, candidate) in lights.iter().zip(&mut candidates) {
             let first_layer = light.slot * light.view_count;
             let state = &self.slots[light.slot as usize];
-            // The map of a deferred light is sampled from the position that the light had when the map was drawn.
+            // The map of a deferred light is sampled from the position that the light had when the
+            // map was drawn.
             let (position_world, range) = if candidate.refreshed || !state.has_map {
                 (light.position_world, light.range)
             } else {
@@ -145,6 +147,7 @@ impl LocalLights {
                 anchor_render: (position_world - frame.origin).as_vec3(),
                 range_world: f64::from(range),
                 limit: range_limit(range, maps.sampling().fade),
+                shadowed_texels: ALL_TEXELS,
                 deferred: !candidate.refreshed,
                 slice: None,
             }));
@@ -252,16 +255,18 @@ impl LocalLights {
         })
     }
 
-    /// Selects the lights to refresh within a budget of `max_views` depth passes. Lights that need a refresh are taken
-    /// in descending order of urgency, which is the importance times (1 + the number of frames waited), so that
-    /// no light of importance above 0 waits for ever. The first is always refreshed, however small the budget; each
-    /// further one is refreshed if its passes fit into the rest.
+    /// Selects the lights to refresh within a budget of `max_views` depth passes. Lights that need
+    /// a refresh are taken in descending order of urgency, which is the importance times (1 + the
+    /// number of frames waited), so that no light of importance above 0 waits for ever. The first
+    /// is always refreshed, however small the budget; each further one is refreshed if its passes
+    /// fit into the rest.
     ///
-    /// The products neither overflow nor underflow in f64: a finite f32 times 2³² is far below the largest f64. An
-    /// importance above 0 counts for no less than [`LEAST_SHARE_OF_IMPORTANCE`] of the frame's greatest. Among `n`
-    /// lights, one of weight `w` beside a greatest weight of `W` then waits at most `(n - 1) W / w + n` frames: once
-    /// its product exceeds `(n - 1) W`, only lights that have waited for at least `n - 1` frames precede it, and each
-    /// of the others can do so only once.
+    /// The products neither overflow nor underflow in f64: a finite f32 times 2³² is far below the
+    /// largest f64. An importance above 0 counts for no less than [`LEAST_SHARE_OF_IMPORTANCE`] of
+    /// the frame's greatest. Among `n` lights, one of weight `w` beside a greatest weight of `W`
+    /// then waits at most `(n - 1) W / w + n` frames: once its product exceeds `(n - 1) W`, only
+    /// lights that have waited for at least `n - 1` frames precede it, and each of the others can
+    /// do so only once.
     fn choose(&self, lights: &[LocalPlacement], max_views: u32, candidates: &mut [Candidate]) {
         let importances = lights.iter().map(|light| f64::from(light.importance));
         let least = importances.fold(0.0, f64::max) * LEAST_SHARE_OF_IMPORTANCE;
@@ -289,8 +294,9 @@ impl LocalLights {
     }
 }
 
-/// Returns the factor by which a view of `map_size` texels is rendered wider than its receivers, so that no kernel
-/// leaves the map: tan(fov/2) grows by N / (N - 2 border). At most half of a map becomes border.
+/// Returns the factor by which a view of `map_size` texels is rendered wider than its receivers, so
+/// that no kernel leaves the map: tan(fov/2) grows by N / (N - 2 border). At most half of a map
+/// becomes border.
 fn border(map_size: u32, border_texels: f64) -> f64 {
     let size = f64::from(map_size);
     size / (size - 2.0 * border_texels.min(size * 0.25))

@@ -1,5 +1,5 @@
-//! Contains the lights that an engine records and the scene that they share. They connect the fit, the depth passes
-//! and the lookups.
+//! Contains the lights that an engine records and the scene that they share. They connect the fit,
+//! the depth passes and the lookups.
 //!
 //! ```text
 //! scene.rs        ShadowScene and ShadowFrame: the input of a frame for all lights

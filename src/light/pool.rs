@@ -1,5 +1,5 @@
-//! Defines pools of local lights: many lights share one texture array, one bind group entry and one WGSL function,
-//! which takes an index.
+//! Defines pools of local lights: many lights share one texture array, one bind group entry and one
+//! WGSL function, which takes an index.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -12,26 +12,30 @@ use crate::receive::{
 use crate::{Bias, Filter, OmniLight, ShadowError, ShadowFrame, SpotLight, report::ShadowReport};
 
 /// Describes what a pool is made of. [`OmniShadowPool::new`] and [`SpotShadowPool::new`] return
-/// [`ShadowError::OutOfRange`] for values outside the ranges given here, and [`ShadowError::OverDeviceLimit`] for those
-/// beyond the device's limits.
+/// [`ShadowError::OutOfRange`] for values outside the ranges given here, and
+/// [`ShadowError::OverDeviceLimit`] for those beyond the device's limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoolDescriptor<'a> {
-    /// Is the label from which all wgpu objects of the pool derive theirs; "shadow pool" if `None`, the default.
+    /// Is the label from which all wgpu objects of the pool derive theirs; "shadow pool" if `None`,
+    /// the default.
     pub label: wgpu::Label<'a>,
-    /// Is the number of lights that the pool can contain at once, fixed for its lifetime: at least 1, and no more than
-    /// the device's limits on texture layers and uniform bytes allow (42 point lights or 256 spot lights with WebGPU's
-    /// default limits). The default is 16. The memory for all of them is allocated at once.
+    /// Is the number of lights that the pool can contain at once, fixed for its lifetime: at least
+    /// 1, and no more than the device's limits on texture layers and uniform bytes allow (42 point
+    /// lights or 256 spot lights with WebGPU's default limits). The default is 16. The memory for
+    /// all of them is allocated at once.
     pub capacity: u32,
-    /// Is the number of texels per side of each map: from 1 to the device's `max_texture_dimension_2d`. The default is
-    /// 512. Cost and memory grow with its square; the blur and the displacement of an edge shrink in proportion to it.
+    /// Is the number of texels per side of each map: from 1 to the device's
+    /// `max_texture_dimension_2d`. The default is
+    /// 512. Cost and memory grow with its square; the blur and the displacement of an edge shrink
+    ///      in proportion to it.
     pub map_size: u32,
-    /// Selects how a map is sampled. The default is that of [`Filter`]. A [`SpotShadowPool`] refuses filters for point
-    /// lights only.
+    /// Selects how a map is sampled. The default is that of [`Filter`]. A [`SpotShadowPool`]
+    /// refuses filters for point lights only.
     pub filter: Filter,
     /// Selects how receivers are kept from shadowing themselves. The default is [`Bias::Auto`].
     pub bias: Bias,
-    /// Is the fraction of a light's range, in 0..=1, over which shadows fade to light before they end there. The
-    /// default is 0: they end at once.
+    /// Is the fraction of a light's range, in 0..=1, over which shadows fade to light before they
+    /// end there. The default is 0: they end at once.
     pub fade: f32,
 }
 
@@ -48,18 +52,19 @@ impl Default for PoolDescriptor<'_> {
     }
 }
 
-/// Identifies a light in a pool. [`OmniShadowPool::insert`] and [`SpotShadowPool::insert`] return it.
+/// Identifies a light in a pool. [`OmniShadowPool::insert`] and [`SpotShadowPool::insert`] return
+/// it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ShadowSlot {
     index: u32,
-    /// Is unique in the process. It distinguishes this slot from slots of other pools and from earlier uses of the same
-    /// index.
+    /// Is unique in the process. It distinguishes this slot from slots of other pools and from
+    /// earlier uses of the same index.
     ticket: u64,
 }
 
 impl ShadowSlot {
-    /// Returns the index to pass to the WGSL function. It is below the pool's capacity, and belongs to this light alone
-    /// until the light is removed.
+    /// Returns the index to pass to the WGSL function. It is below the pool's capacity, and belongs
+    /// to this light alone until the light is removed.
     pub const fn index(&self) -> u32 {
         self.index
     }
@@ -72,12 +77,14 @@ pub struct PoolLight<L> {
     pub slot: ShadowSlot,
     /// Describes the light.
     pub light: L,
-    /// Determines which lights are refreshed first where the budget does not suffice for all: at least 0 and finite,
-    /// for example the fraction of the image that the light covers. Only the ratios between importances matter. Each
-    /// frame for which a light is deferred raises its urgency, so that none of importance above 0 waits for ever;
-    /// lights of importance 0 are refreshed from what the others leave of the budget. An importance above 0 counts for
-    /// at least 1/4096 of the greatest in the frame: of `n` lights that change in every frame, one of importance `i`
-    /// beside a greatest importance of `g` waits at most `(n - 1) min(g / i, 4096) + n` frames.
+    /// Determines which lights are refreshed first where the budget does not suffice for all: at
+    /// least 0 and finite, for example the fraction of the image that the light covers. Only the
+    /// ratios between importances matter. Each frame for which a light is deferred raises its
+    /// urgency, so that none of importance above 0 waits for ever; lights of importance 0 are
+    /// refreshed from what the others leave of the budget. An importance above 0 counts for at
+    /// least 1/4096 of the greatest in the frame: of `n` lights that change in every frame, one of
+    /// importance `i` beside a greatest importance of `g` waits at most `(n - 1) min(g / i, 4096) +
+    /// n` frames.
     pub importance: f32,
 }
 
@@ -160,8 +167,8 @@ macro_rules! pool {
             /// Creates the texture and the buffers for all slots.
             ///
             /// # Errors
-            /// Returns [`ShadowError`] for a descriptor with a value out of range, and for a device whose limits or
-            /// memory do not suffice or that is lost.
+            /// Returns [`ShadowError`] for a descriptor with a value out of range, and for a device
+            /// whose limits or memory do not suffice or that is lost.
             pub fn new(
                 device: &wgpu::Device,
                 descriptor: &PoolDescriptor<'_>,
@@ -202,7 +209,8 @@ macro_rules! pool {
                 })
             }
 
-            /// Reserves a slot for a light. The light is lit everywhere until its map is first drawn.
+            /// Reserves a slot for a light. The light is lit everywhere until its map is first
+            /// drawn.
             ///
             /// # Errors
             /// Returns [`ShadowError::PoolFull`] if every slot is occupied.
@@ -215,31 +223,37 @@ macro_rules! pool {
             /// Frees a light's slot.
             ///
             /// # Errors
-            /// Returns [`ShadowError::UnknownSlot`] for a slot of another pool or one that was removed already.
+            /// Returns [`ShadowError::UnknownSlot`] for a slot of another pool or one that was
+            /// removed already.
             pub fn remove(&mut self, slot: ShadowSlot) -> Result<(), ShadowError> {
                 self.slots.check("slot", slot)?;
                 self.slots.tickets[slot.index as usize] = None;
                 Ok(())
             }
 
-            /// Fits the lights to the frame, culls the casters, writes the uniforms, and records the depth passes that
-            /// are needed and that the budget allows. A light in which nothing changed takes no pass. Lights of the
-            /// pool that are not listed cast no shadow in this frame: every surface is lit.
+            /// Fits the lights to the frame, culls the casters, writes the uniforms, and records
+            /// the depth passes that are needed and that the budget allows. A light in which
+            /// nothing changed takes no pass. Lights of the pool that are not listed cast no shadow
+            /// in this frame: every surface is lit.
             ///
-            /// `max_views` is the budget: the largest number of depth passes (over `map_size`² texels each) to record
-            /// in this frame, or `None` for no limit. A view takes one pass, or two where its static-caster cache is
-            /// drawn as well. The most important lights are refreshed first, and at least one is, whatever it costs.
-            /// The others keep their last map and are reported as [`Deferred`](crate::report::ViewStatus::Deferred). A
-            /// light that has never been drawn, or not since `invalidate`, is lit everywhere until it is refreshed.
+            /// `max_views` is the budget: the largest number of depth passes (over `map_size`²
+            /// texels each) to record in this frame, or `None` for no limit. A view takes one pass,
+            /// or two where its static-caster cache is drawn as well. The most important lights are
+            /// refreshed first, and at least one is, whatever it costs. The others keep their last
+            /// map and are reported as [`Deferred`](crate::report::ViewStatus::Deferred). A light
+            /// that has never been drawn, or not since `invalidate`, is lit everywhere until it is
+            /// refreshed.
             ///
-            /// The encoder must be submitted before any work that samples these shadows, and encoders must be submitted
-            /// in the order in which they were recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)).
+            /// The encoder must be submitted before any work that samples these shadows, and
+            /// encoders must be submitted in the order in which they were recorded ([what a kept
+            /// map relies on](crate#what-a-kept-map-relies-on)).
             ///
             /// # Errors
-            /// Returns [`ShadowError`] for a slot that is not this pool's or is listed twice, for an importance that is
-            /// negative or not finite, for a light with an invalid value, for a view that cannot be represented, for
-            /// casters whose pipelines do not fit the pool, and for a device that is lost or out of memory. Nothing is
-            /// recorded then, and the maps of the last successful frame remain.
+            /// Returns [`ShadowError`] for a slot that is not this pool's or is listed twice, for
+            /// an importance that is negative or not finite, for a light with an invalid value, for
+            /// a view that cannot be represented, for casters whose pipelines do not fit the pool,
+            /// and for a device that is lost or out of memory. Nothing is recorded then, and the
+            /// maps of the last successful frame remain.
             pub fn record(
                 &mut self,
                 encoder: &mut wgpu::CommandEncoder,
@@ -264,16 +278,16 @@ macro_rules! pool {
                 self.lights.maps()
             }
 
-            /// Discards the extents of earlier frames. Without this call, extents grow at once and shrink only after
-            /// some time, so that moving objects do not change the texels of static ones. Call it where the camera cuts
-            /// to another scene.
+            /// Discards the extents of earlier frames. Without this call, extents grow at once and
+            /// shrink only after some time, so that moving objects do not change the texels of
+            /// static ones. Call it where the camera cuts to another scene.
             pub fn reset_history(&mut self) {
                 self.lights.reset_history();
             }
 
             /// Declares the contents of the maps invalid ([what a kept map relies
-            /// on](crate#what-a-kept-map-relies-on)): the next frame draws every view, or as many as its budget allows;
-            /// the other lights are lit everywhere until they are refreshed.
+            /// on](crate#what-a-kept-map-relies-on)): the next frame draws every view, or as many
+            /// as its budget allows; the other lights are lit everywhere until they are refreshed.
             pub fn invalidate(&mut self) {
                 self.lights.invalidate();
             }
@@ -282,8 +296,8 @@ macro_rules! pool {
 }
 
 pool!(
-    /// Renders the shadows of point lights that are inserted and removed at run time. Each slot has six layers of one
-    /// texture array.
+    /// Renders the shadows of point lights that are inserted and removed at run time. Each slot has
+    /// six layers of one texture array.
     ///
     /// The WGSL function is `shadow_NAME(slot.index(), position, normal)`.
     OmniShadowPool,
@@ -294,8 +308,8 @@ pool!(
 );
 
 pool!(
-    /// Renders the shadows of spot lights that are inserted and removed at run time. Each slot has one layer of one
-    /// texture array.
+    /// Renders the shadows of spot lights that are inserted and removed at run time. Each slot has
+    /// one layer of one texture array.
     ///
     /// The WGSL function is `shadow_NAME(slot.index(), position, normal)`.
     SpotShadowPool,

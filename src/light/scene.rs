@@ -1,5 +1,5 @@
-//! Defines the input of a frame for all lights: origin, cameras, casters and receivers, which are checked and collected
-//! once.
+//! Defines the input of a frame for all lights: origin, cameras, casters and receivers, which are
+//! checked and collected once.
 
 use glam::{DVec3, Vec3};
 
@@ -8,41 +8,61 @@ use crate::check;
 use crate::fit::{CameraFrustum, HalfSpaces, Region};
 use crate::{Aabb, CameraView, ShadowError};
 
-/// Selects the receivers for which the shadows of a frame are rendered. Maps cover no other surfaces.
+/// Selects the receivers for which the shadows of a frame are rendered. Maps cover no other
+/// surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Coverage<'a> {
-    /// Covers what any of these cameras sees: one for an ordinary frame, several for the eyes of a headset, a split
-    /// screen or a mirror. All of them sample the same maps. With an empty list nothing counts as seen, and nothing is
-    /// drawn.
+    /// Covers what any of these cameras sees: one for an ordinary frame, several for the eyes of a
+    /// headset, a split screen or a mirror. All of them sample the same maps. With an empty list
+    /// nothing counts as seen, and nothing is drawn.
+    ///
+    /// The array must live until [`ShadowScene::frame`] returns. Where the descriptor is a variable
+    /// of its own, the array needs a name as well (`let cameras = [camera];`, then
+    /// `Coverage::Cameras(&cameras)`): otherwise compilers before Rust 1.89 report a temporary
+    /// value that is dropped while borrowed (E0716).
     Cameras(&'a [CameraView]),
-    /// Covers what lies in a box of render space, as textbook examples do. The light-space bounds of a directional
-    /// light then follow from this box, whatever the casters, and its first cascade alone covers it. Surfaces outside
-    /// the box are lit. The box must be finite; an empty one covers nothing.
+    /// Covers what lies in a box of render space, as textbook examples do. The box must be finite;
+    /// an empty one covers nothing.
+    ///
+    /// The light-space bounds of a directional light then follow from this box, whatever the
+    /// casters, and its first cascade alone covers it. Its shadows end at the sides of the smallest
+    /// rectangle, along the axes of the map, that holds the box as seen from the light, or up to a
+    /// texel beyond. So they end steadily wherever the box moves, but not at the box itself: a
+    /// surface in front of the box or behind it, seen from the light, keeps its shadows. They end
+    /// at once, because a [`fade`](crate::DirectionalShadowDescriptor::fade) needs a distance. (The
+    /// lookup compares a position with the rectangle and with one plane. The six sides of the box
+    /// would cost every lookup of every light, under cameras as well.) Shadows of spot and point
+    /// lights end at their range.
     Bounds(Aabb),
-    /// Covers all receivers, wherever they are: for scenes that are small or that are seen from everywhere.
+    /// Covers all receivers, wherever they are: for scenes that are small or that are seen from
+    /// everywhere.
     Everything,
 }
 
-/// Describes the input of a frame. The casters stay borrowed for as long as lights are recorded with the frame, all
-/// other fields only until [`ShadowScene::frame`] returns.
+/// Describes the input of a frame. The casters stay borrowed for as long as lights are recorded
+/// with the frame, all other fields only until [`ShadowScene::frame`] returns.
 #[derive(Clone, Copy)]
 pub struct ShadowFrameDescriptor<'d, 'c> {
-    /// Is the world position of the origin of render space (f64, finite). It is zero unless the engine renders relative
-    /// to its camera. An origin that differs from the one the engine subtracts displaces all shadows.
+    /// Is the world position of the origin of render space (f64, finite). It is zero unless the
+    /// engine renders relative to its camera. An origin that differs from the one the engine
+    /// subtracts displaces all shadows.
     ///
-    /// The texels of a directional light keep their positions in the world, so f64 must distinguish them there. With
-    /// texels of `t` units, in maps of 64 or more texels per side, a frame is accepted up to a distance from the world
-    /// origin of at least `2⁴⁷ t` units, which is 1.4·10¹² units for texels of a hundredth of a unit. At some hundred
-    /// times that distance the light's `record` returns [`ShadowError::ViewNotRepresentable`].
+    /// The texels of a directional light keep their positions in the world, so f64 must distinguish
+    /// them there. A frame whose view extends over `e` units, in a map of `n` texels per side (64
+    /// if it has fewer), is taken up to a distance of `2⁵⁰ e / n` units from the world origin,
+    /// which is 5·10¹³ units for 100 units in 2048 texels. Beyond that the light's `record` returns
+    /// [`ShadowError::ViewNotRepresentable`], whose docs tell more.
     pub origin: DVec3,
     /// Selects the receivers for which the shadows are rendered.
     pub coverage: Coverage<'d>,
-    /// Lists all objects that may cast. All of them receive as well, unless [`ShadowCaster::receives`] returns false.
+    /// Lists all objects that may cast. All of them receive as well, unless
+    /// [`ShadowCaster::receives`] returns false.
     pub casters: &'c [&'c dyn ShadowCaster],
-    /// Lists the bounds, in render space, of the surfaces that receive and do not cast. Each must be finite or empty;
-    /// others are left out of the frame and named by [`ShadowFrame::broken_bounds`]. A surface that is missing here may
-    /// lie outside the maps, and is then lit.
+    /// Lists the bounds, in render space, of the surfaces that receive and do not cast. Each must
+    /// be finite or empty; others are left out of the frame and named by
+    /// [`ShadowFrame::broken_bounds`]. A surface that is missing here may lie outside the maps, and
+    /// is then lit.
     pub receivers: &'d [Aabb],
 }
 
@@ -63,14 +83,16 @@ impl ShadowScene {
         Self::default()
     }
 
-    /// Checks a frame and collects the bounds of its casters, once for all lights that are recorded with it. The
-    /// methods of every caster but [`pipeline`](ShadowCaster::pipeline) and [`draw`](ShadowCaster::draw) are called
-    /// here; while the lights are recorded, only these two are called.
+    /// Checks a frame and collects the bounds of its casters, once for all lights that are recorded
+    /// with it. The methods of every caster but [`pipeline`](ShadowCaster::pipeline) and
+    /// [`draw`](ShadowCaster::draw) are called here; while the lights are recorded, only these two
+    /// are called.
     ///
     /// # Errors
-    /// Returns [`ShadowError`] for an origin that is not finite, for a camera whose matrices are not finite and
-    /// invertible or whose distance limit is not above 0, and for a covered box that is neither finite nor empty.
-    /// Bounds of casters and receivers that are not finite are no error: [`ShadowFrame::broken_bounds`] names them.
+    /// Returns [`ShadowError`] for an origin that is not finite, for a camera whose matrices are
+    /// not finite and invertible or whose distance limit is not above 0, and for a covered box that
+    /// is neither finite nor empty. Bounds of casters and receivers that are not finite are no
+    /// error: [`ShadowFrame::broken_bounds`] names them.
     pub fn frame<'a>(
         &'a mut self,
         descriptor: &ShadowFrameDescriptor<'_, 'a>,
@@ -132,27 +154,31 @@ impl ShadowScene {
 pub struct ShadowFrame<'a> {
     pub(crate) origin: DVec3,
     pub(crate) region: Region<'a>,
-    /// Holds the same region as intersections of half-spaces: receivers count where they lie in one of these.
+    /// Holds the same region as intersections of half-spaces: receivers count where they lie in one
+    /// of these.
     pub(crate) seen: &'a [HalfSpaces],
     pub(crate) casters: FrameCasters<'a>,
     /// Holds the bounds of all receivers.
     pub(crate) receivers: &'a [Aabb],
-    /// Holds, for each receiver, the index of the caster whose surface it is, or `None` where it is not a caster's.
+    /// Holds, for each receiver, the index of the caster whose surface it is, or `None` where it is
+    /// not a caster's.
     pub(crate) receiver_casters: &'a [Option<u32>],
 }
 
 impl ShadowFrame<'_> {
-    /// Returns the bounds of casters and receivers that have a NaN or an infinite corner and are not empty. Their
-    /// objects are left out of the frame, and all others keep their shadows. Each light's report lists the same bounds
+    /// Returns the bounds of casters and receivers that have a NaN or an infinite corner and are
+    /// not empty. Their objects are left out of the frame, and all others keep their shadows. Each
+    /// light's report lists the same bounds
     /// ([`ShadowReport::broken_bounds`](crate::report::ShadowReport::broken_bounds)).
     pub fn broken_bounds(&self) -> &[BrokenBounds] {
         self.casters.broken
     }
 
-    /// Returns the position of the first camera in render space, or `None` where the frame has no camera.
+    /// Returns the position of the first camera in render space, or `None` where the frame has no
+    /// camera.
     pub(crate) fn camera_render(&self) -> Option<Vec3> {
         match self.region {
-            Region::Cameras(cameras) => cameras.first().map(CameraFrustum::eye_render),
+            Region::Cameras(cameras) => cameras.first().map(|camera| camera.eye().as_vec3()),
             Region::Bounds(_) | Region::Everything => None,
         }
     }

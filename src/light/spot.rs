@@ -11,21 +11,26 @@ use crate::receive::{
 };
 use crate::{Bias, Filter, ShadowError, ShadowFrame, report::ShadowReport};
 
-/// Describes what a [`SpotShadow`] is made of. [`SpotShadow::new`] returns [`ShadowError::OutOfRange`] for values
-/// outside the ranges given here, and [`ShadowError::OverDeviceLimit`] for those beyond the device's limits.
+/// Describes what a [`SpotShadow`] is made of. [`SpotShadow::new`] returns
+/// [`ShadowError::OutOfRange`] for values outside the ranges given here, and
+/// [`ShadowError::OverDeviceLimit`] for those beyond the device's limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpotShadowDescriptor<'a> {
-    /// Is the label from which all wgpu objects of the light derive theirs; "spot shadow" if `None`, the default.
+    /// Is the label from which all wgpu objects of the light derive theirs; "spot shadow" if
+    /// `None`, the default.
     pub label: wgpu::Label<'a>,
-    /// Is the number of texels per side of the map: from 1 to the device's `max_texture_dimension_2d`. The default is
-    /// 1024. Cost and memory grow with its square; the blur and the displacement of an edge shrink in proportion to it.
+    /// Is the number of texels per side of the map: from 1 to the device's
+    /// `max_texture_dimension_2d`. The default is
+    /// 1024. Cost and memory grow with its square; the blur and the displacement of an edge shrink
+    ///       in proportion to it.
     pub map_size: u32,
-    /// Selects how the map is sampled. The default is that of [`Filter`]. Filters for point lights only are refused.
+    /// Selects how the map is sampled. The default is that of [`Filter`]. Filters for point lights
+    /// only are refused.
     pub filter: Filter,
     /// Selects how receivers are kept from shadowing themselves. The default is [`Bias::Auto`].
     pub bias: Bias,
-    /// Is the fraction of a light's range, in 0..=1, over which shadows fade to light before they end there. The
-    /// default is 0: they end at once.
+    /// Is the fraction of a light's range, in 0..=1, over which shadows fade to light before they
+    /// end there. The default is 0: they end at once.
     pub fade: f32,
 }
 
@@ -44,27 +49,34 @@ impl Default for SpotShadowDescriptor<'_> {
 /// Describes a light at a position that shines into a cone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpotLight {
-    /// Absolute world position (f64). The near plane of the map is at the bounds of the nearest caster, but no nearer than
-    /// 1/1024 of half their largest side. Where bounds contain the light, as those of a lamp shade or of a room do, it is at
-    /// 1/16 of half their smallest side. Both limits are at most 1/1024 of the distance to the farthest receiver that is
-    /// seen. What lies before the near plane casts nothing.
+    /// Is the absolute world position (f64), finite. The near plane of the map is at the bounds of
+    /// the nearest caster, but no nearer than 1/1024 of half their largest side. Where bounds
+    /// contain the light, as those of a lamp shade, of a room or of a whole scene do, it is at 1/16
+    /// of half their smallest side, or at the distance that costs half a texel of contact at the
+    /// farthest receiver that is seen (1/8192 of that receiver's distance in maps of 1024 texels),
+    /// whichever is farther. No limit is more than 1/1024 of the distance to that receiver. What
+    /// lies before the near plane casts nothing.
     pub position_world: DVec3,
-    /// Is the direction in which the light shines, in world axes, finite and of any length but zero.
+    /// Is the direction in which the light shines, in world axes, finite and of any length but
+    /// zero.
     pub direction: Vec3,
-    /// Is the angle in radians from the axis to the rim of the cone, half of what the cone spans: above 0 and below
-    /// π/2. Outside the cone visibility is 1, since attenuation belongs to the engine; an angle below that of the
-    /// engine's attenuation leaves the rim without shadows. The map is flat, so its texels grow toward the rim. From
-    /// [`SpotLight::WIDEST_SENSIBLE_OUTER_ANGLE`] on, a point light with the same memory has finer texels in the middle
-    /// of the cone.
+    /// Is the angle in radians from the axis to the rim of the cone, half of what the cone spans:
+    /// above 0 and below π/2. Outside the cone visibility is 1, since attenuation belongs to the
+    /// engine; an angle below that of the engine's attenuation leaves the rim without shadows. The
+    /// map is flat, so its texels grow toward the rim. From
+    /// [`SpotLight::WIDEST_SENSIBLE_OUTER_ANGLE`] on, a point light with the same memory has finer
+    /// texels in the middle of the cone.
     pub outer_angle_radians: f32,
-    /// Distance in world units beyond which the light neither draws casters nor shadows receivers; above 0, infinity allowed. An
-    /// end that is far away costs no precision: maps are fitted to what is seen within it.
+    /// Is the distance in world units beyond which the light neither draws casters nor shadows
+    /// receivers; above 0, infinity allowed. An end that is far away costs no precision: maps are
+    /// fitted to what is seen within it.
     pub range: f32,
 }
 
 impl SpotLight {
-    /// Is the half-angle, in radians, at which one map of 6 N² texels is as fine in its middle as the faces of a cube
-    /// with N² texels each: atan √6 = 67.8°. An [`OmniShadow`](crate::OmniShadow) suits wider cones better.
+    /// Is the half-angle, in radians, at which one map of 6 N² texels is as fine in its middle as
+    /// the faces of a cube with N² texels each: atan √6 = 67.8°. An
+    /// [`OmniShadow`](crate::OmniShadow) suits wider cones better.
     pub const WIDEST_SENSIBLE_OUTER_ANGLE: f32 = 1.183_199_6;
 }
 
@@ -75,11 +87,12 @@ pub struct SpotShadow {
 }
 
 impl SpotShadow {
-    /// Creates the light's texture and buffers. Until the first [`SpotShadow::record`], every surface is lit.
+    /// Creates the light's texture and buffers. Until the first [`SpotShadow::record`], every
+    /// surface is lit.
     ///
     /// # Errors
-    /// Returns [`ShadowError`] for a descriptor with a value out of range, and for a device whose limits or memory do
-    /// not suffice or that is lost.
+    /// Returns [`ShadowError`] for a descriptor with a value out of range, and for a device whose
+    /// limits or memory do not suffice or that is lost.
     pub fn new(
         device: &wgpu::Device,
         descriptor: &SpotShadowDescriptor<'_>,
@@ -107,16 +120,19 @@ impl SpotShadow {
         Ok(Self { lights })
     }
 
-    /// Fits the view to the frame, culls the casters, writes the uniforms, and records the depth pass if it is needed.
+    /// Fits the view to the frame, culls the casters, writes the uniforms, and records the depth
+    /// pass if it is needed.
     ///
-    /// The encoder must be submitted before any work that samples these shadows, and encoders must be submitted in the
-    /// order in which they were recorded ([what a kept map relies on](crate#what-a-kept-map-relies-on)).
+    /// The encoder must be submitted before any work that samples these shadows, and encoders must
+    /// be submitted in the order in which they were recorded ([what a kept map relies
+    /// on](crate#what-a-kept-map-relies-on)).
     ///
     /// # Errors
-    /// Returns [`ShadowError`] for a position or direction that is not finite, for a direction of length zero, for an
-    /// angle or range outside its limits, for a view that cannot be represented, for casters whose pipelines do not fit
-    /// the light, and for a device that is lost or out of memory. Nothing is recorded then, and the map of the last
-    /// successful frame remains.
+    /// Returns [`ShadowError`] for a position or direction that is not finite, for a direction of
+    /// length zero, for an angle or range outside its limits, for a view that cannot be
+    /// represented, for casters whose pipelines do not fit the light, and for a device that is lost
+    /// or out of memory. Nothing is recorded then, and the map of the last successful frame
+    /// remains.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -132,21 +148,23 @@ impl SpotShadow {
         self.lights.maps()
     }
 
-    /// Discards the extents of earlier frames. Without this call, extents grow at once and shrink only after some time,
-    /// so that moving objects do not change the texels of static ones. Call it where the camera cuts to another scene.
+    /// Discards the extents of earlier frames. Without this call, extents grow at once and shrink
+    /// only after some time, so that moving objects do not change the texels of static ones. Call
+    /// it where the camera cuts to another scene.
     pub fn reset_history(&mut self) {
         self.lights.reset_history();
     }
 
-    /// Declares the contents of the map invalid ([what a kept map relies on](crate#what-a-kept-map-relies-on)): the
-    /// next frame draws it.
+    /// Declares the contents of the map invalid ([what a kept map relies
+    /// on](crate#what-a-kept-map-relies-on)): the next frame draws it.
     pub fn invalidate(&mut self) {
         self.lights.invalidate();
     }
 }
 
 impl SpotLight {
-    /// Returns the light's view in slot `slot` of its maps if its position, direction, angle and range are valid.
+    /// Returns the light's view in slot `slot` of its maps if its position, direction, angle and
+    /// range are valid.
     pub(crate) fn placement(
         &self,
         slot: u32,

@@ -1,6 +1,6 @@
 //! Computes the uniforms of all views of a light.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 
 use crate::cast::ViewDraws;
 use crate::fit::{LightAxes, MapRect, ShadowView, ViewPlacement};
@@ -9,6 +9,14 @@ use crate::receive::uniforms::{ROUNDING_TEXELS, Sampling, ShadowMapping, ShadowV
 
 /// Is the uniform's `limit` for shadows that end where the maps end: their weight is one everywhere.
 pub(crate) const NO_LIMIT: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
+
+/// Is the region of texels in which positions have shadows, for shadows that end where the map ends.
+pub(crate) const ALL_TEXELS: [f32; 4] = [
+    f32::NEG_INFINITY,
+    f32::NEG_INFINITY,
+    f32::INFINITY,
+    f32::INFINITY,
+];
 
 /// Returns a range for the uniforms. An infinite one becomes a distance that no position exceeds and
 /// whose square is finite.
@@ -82,18 +90,28 @@ impl LightUniforms {
         }
     }
 
-    /// Returns the uniform of one of the light's views.
-    pub fn view(&self, view: &ShadowView, sampling: &Sampling) -> ShadowViewUniform {
+    /// Returns the uniform of one of the light's views, in which positions have shadows within
+    /// `shadowed_texels`: least x, least y, greatest x, greatest y in texel coordinates.
+    pub fn view(
+        &self,
+        view: &ShadowView,
+        sampling: &Sampling,
+        shadowed_texels: [f32; 4],
+    ) -> ShadowViewUniform {
         let view = self.sampled(view);
         let size = f64::from(view.map_size());
         // Only the middle of a map that is smaller than its borders remains.
         let border = (sampling.border_texels() - ROUNDING_TEXELS).min(size * 0.5);
+        let [left, top, right, bottom] = shadowed_texels.map(f64::from);
+        let least = DVec2::new(left, top).max(DVec2::splat(border));
+        let greatest = DVec2::new(right, bottom).min(DVec2::splat(size - border));
+        let middle = (least + greatest) * 0.5;
         let (depth_error, depth_error_relative) = view.depth_error_ndc();
         let (manual_constant, manual_slope) = sampling.bias.manual();
         let light_size = f64::from(sampling.filter.light_size());
         let range = endless_range(view.range_world());
         let blend_texels = f64::from(sampling.blend) * size;
-        let plane = Plane::of(&view, self.anchor_render);
+        let plane = Plane::of(&view, self.anchor_render, middle);
         let offset_world = view.position_error_world();
         ShadowViewUniform {
             mapping: ShadowMapping {
@@ -112,8 +130,8 @@ impl LightUniforms {
             is_local: f32::from(u8::from(plane.is_local)),
             anchor: self.anchor_render.to_array(),
             grid: view.world_grid(),
-            inner: [(size * 0.5 - border) as f32; 2],
-            middle: [(size * 0.5) as f32; 2],
+            inner: ((greatest - least) * 0.5).as_vec2().to_array(),
+            middle: middle.as_vec2().to_array(),
             map_size: size as f32,
             uv_per_texel: size.recip() as f32,
             depth_error: (depth_error + sampling.depth_format.step_ndc()) as f32,
@@ -157,15 +175,15 @@ struct Plane {
 }
 
 impl Plane {
-    /// Returns the plane of `view` for positions relative to `anchor_render`.
-    fn of(view: &ShadowView, anchor_render: Vec3) -> Self {
-        let half = f64::from(view.map_size()) * 0.5;
+    /// Returns the plane of `view` for positions relative to `anchor_render`, whose texels are
+    /// counted from `middle`.
+    fn of(view: &ShadowView, anchor_render: Vec3, middle: DVec2) -> Self {
         match view.placement() {
             ViewPlacement::Orthographic { axes, bounds } => {
                 let apart = anchor_render.as_dvec3() - view.anchor_render().as_dvec3();
                 let at_anchor: DVec3 = view.texel_from_anchor().transform_point3(apart);
                 let depth_scale = bounds.depth.length().recip();
-                let offset = [at_anchor.x - half, at_anchor.y - half];
+                let offset = at_anchor.truncate() - middle;
                 Self {
                     axes: *axes,
                     is_local: false,
@@ -176,12 +194,11 @@ impl Plane {
             ViewPlacement::Perspective {
                 axes, rect, near, ..
             } => {
-                let left = -rect.min.x / rect.texel.x - half;
-                let top = rect.max().y / rect.texel.y - half;
+                let corner = DVec2::new(-rect.min.x, rect.max().y) / rect.texel;
                 Self {
                     axes: *axes,
                     is_local: true,
-                    mapping: mapping(rect, [left, top], *near),
+                    mapping: mapping(rect, corner - middle, *near),
                     depth_offset: 0.0,
                 }
             }
@@ -189,10 +206,10 @@ impl Plane {
     }
 }
 
-fn mapping(rect: &MapRect, texel_offset: [f64; 2], depth_scale: f64) -> ShadowMapping {
+fn mapping(rect: &MapRect, texel_offset: DVec2, depth_scale: f64) -> ShadowMapping {
     ShadowMapping {
         texel_scale: rect.texel.recip().as_vec2().to_array(),
-        texel_offset: texel_offset.map(|texels| texels as f32),
+        texel_offset: texel_offset.as_vec2().to_array(),
         texel_size: rect.texel.as_vec2().to_array(),
         depth_scale: depth_scale as f32,
         rounding: 0.0,

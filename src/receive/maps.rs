@@ -6,7 +6,7 @@ use crate::cast::{FrameCasters, Plan, Recorder, ViewDraws};
 use crate::error::DeviceError;
 use crate::gpu::{DepthMap, UploadBuffer, capture_device_errors};
 use crate::receive::layer_limits::check_layers;
-use crate::receive::light_uniforms::{LightUniforms, empty_view_uniform};
+use crate::receive::light_uniforms::{ALL_TEXELS, LightUniforms, NO_LIMIT, empty_view_uniform};
 use crate::receive::report::{ShadowReport, ViewReport, ViewStatus};
 use crate::receive::sampled_maps::{SampledMaps, Selection};
 use crate::receive::uniforms::ShadowMapping;
@@ -71,6 +71,9 @@ pub(crate) struct LayerState {
     pub range_world: f64,
     /// Is where the light's shadows end, as the uniform has it.
     pub limit: [f32; 4],
+    /// Bounds the texels in which positions have shadows, in addition to the bounds of the map:
+    /// least x and y, greatest x and y.
+    pub shadowed_texels: [f32; 4],
     /// States that the layer needed drawing and was deferred.
     pub deferred: bool,
     /// Describes the slice of a camera's view that the layer covers as a cascade.
@@ -78,13 +81,14 @@ pub(crate) struct LayerState {
 }
 
 impl LayerState {
-    /// Returns the state of a layer of a directional light.
-    pub fn directional(layer: u32, limit: [f32; 4], slice: Option<SliceReport>) -> Self {
+    /// Returns the state of a layer of a directional light without a limit to its shadows.
+    pub fn directional(layer: u32, slice: Option<SliceReport>) -> Self {
         Self {
             layer,
             anchor_render: Vec3::ZERO,
             range_world: f64::INFINITY,
-            limit,
+            limit: NO_LIMIT,
+            shadowed_texels: ALL_TEXELS,
             deferred: false,
             slice,
         }
@@ -298,6 +302,11 @@ impl ShadowMaps {
         }
         for light in lights(views, self.views_per_light) {
             let shared = LightUniforms::of(light);
+            let shadowed = |view: &ShadowView| {
+                let base = layers.iter().find(|base| base.layer == view.layer());
+                base.map_or(ALL_TEXELS, |base| base.shadowed_texels)
+            };
+            let uniform_of = |view: &ShadowView| shared.view(view, &self.sampling, shadowed(view));
             // Shaders read what the views of a light have in common from any of them, those into
             // which nothing casts included.
             let first_layer = light[0].view.layer();
@@ -306,12 +315,12 @@ impl ShadowMaps {
                 uniforms[layer as usize] = ShadowViewUniform {
                     mapping: ShadowMapping::EMPTY,
                     layer,
-                    ..shared.view(&light[0].view, &self.sampling)
+                    ..uniform_of(&light[0].view)
                 };
             }
             for draws in light {
                 let layer = draws.view.layer() as usize;
-                uniforms[layer] = shared.view(&draws.view, &self.sampling);
+                uniforms[layer] = uniform_of(&draws.view);
             }
         }
         for base in layers {

@@ -34,7 +34,7 @@ pub use bias::Bias;
 pub use bindings::{ShadowBindings, ShadowBindingsDescriptor};
 pub(crate) use check_sampling::{check_bias, check_fade, check_filter, check_planar_filter};
 pub use filter::Filter;
-pub(crate) use light_uniforms::NO_LIMIT;
+pub(crate) use light_uniforms::{ALL_TEXELS, NO_LIMIT};
 pub use maps::ShadowMaps;
 pub(crate) use maps::{LayerState, MapsFrame, ShadowMapsDescriptor};
 pub use report::{ShadowReport, ViewReport, ViewStatus};

@@ -40,10 +40,10 @@ pub struct ShadowViewUniform {
     /// Is the position of the map's first texel in a texel grid that is fixed in the world, modulo
     /// 65536: x in the low 16 bits, y in the high 16 bits.
     pub(crate) grid: u32,
-    /// Is the distance from the middle of the map, in texels along x and y, within which a lookup
-    /// stays inside the map, with kernel and bias included.
+    /// Is the distance from the middle, in texels along x and y, within which a lookup stays inside
+    /// the map, with kernel and bias included, and positions have shadows.
     pub(crate) inner: [f32; 2],
-    /// Is the middle of the map in texel coordinates.
+    /// Is the middle of the part of the map in which positions have shadows, in texel coordinates.
     pub(crate) middle: [f32; 2],
     /// Is the number of texels per side.
     pub(crate) map_size: f32,
@@ -97,7 +97,7 @@ pub struct ShadowViewUniform {
 pub(crate) struct ShadowMapping {
     /// Is the number of texels per unit of the plane.
     pub texel_scale: [f32; 2],
-    /// Is the position of the anchor, in texels from the middle of the map.
+    /// Is the position of the anchor, in texels from the middle.
     pub texel_offset: [f32; 2],
     /// Is the size of a texel in units of the plane.
     pub texel_size: [f32; 2],

@@ -162,6 +162,104 @@ fn several_cameras_share_an_end_if_they_look_the_same_way() {
     }
 }
 
+/// Checks that the eyes of a headset whose displays are turned apart share an end wherever the
+/// cameras are.
+#[test]
+fn eyes_that_are_turned_apart_share_an_end_anywhere() {
+    let descriptor = DirectionalShadowDescriptor {
+        map_size: 512,
+        ..Default::default()
+    };
+    for aside in [0.0, 150.0] {
+        let first = camera(aside);
+        let eye = first.pose.eye;
+        let turned = Camera::modern(eye, eye + DVec3::new(0.3, -0.1, -1.0), 1.0, 1.5);
+        let eyes = [&first, &turned].map(|camera| camera.view().with_max_distance(40.0));
+        let in_view = |depth: f64| {
+            let middle = DVec3::new(0.05, 0.0, -1.0) * depth;
+            let position = DVec3::new(eye.x, 0.0, eye.z) + middle;
+            (
+                -first.pose.axes.z_axis.dot(position - eye),
+                Point::rounded(position, DVec3::Y),
+            )
+        };
+        let depths = (50..800).map(|depth| f64::from(depth) * 0.1);
+        let positions: Vec<_> = depths.map(in_view).collect();
+        let points: Vec<_> = positions.iter().map(|(_, point)| *point).collect();
+        for ((depth, _), seen) in positions.iter().zip(seen(&descriptor, &eyes, &points)) {
+            if (depth - 40.0).abs() > 0.1 {
+                let wanted = if *depth > 40.0 { 1.0 } else { 0.0 };
+                assert_eq!(seen, wanted, "{aside}: {depth}");
+            }
+        }
+    }
+}
+
+/// Checks that shadows end at the sides of a covered box as seen from the light, or up to a texel
+/// beyond, wherever the box is, while the map itself reaches farther.
+#[test]
+fn shadows_end_at_a_covered_box() {
+    let gpu = gpu();
+    let hall = hall();
+    let list = hall.list();
+    let light = DirectionalLight::new(Vec3::new(0.2, -1.0, 0.1));
+    let descriptor = DirectionalShadowDescriptor {
+        map_size: 256,
+        ..Default::default()
+    };
+    let mut shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");
+    let ask = Ask::light(gpu, shadow.maps());
+    let mut reached = 0.0_f64;
+    for step in 0..40 {
+        let middle = DVec3::new(0.31 * f64::from(step), 0.0, -0.17 * f64::from(step));
+        let half = DVec3::new(10.0, 0.5, 8.0);
+        let (low, high) = ((middle - half).as_vec3(), (middle + half).as_vec3());
+        let mut scene = ShadowScene::new();
+        let frame = scene
+            .frame(&ShadowFrameDescriptor {
+                origin: DVec3::ZERO,
+                coverage: Coverage::Bounds(Aabb::new(low, high)),
+                casters: &list,
+                receivers: &[],
+            })
+            .expect("a valid frame");
+        let mut encoder = gpu.encoder();
+        shadow
+            .record(&mut encoder, &frame, &light)
+            .expect("a valid frame");
+        gpu.submit(encoder);
+        let view = shadow.maps().views().next().expect("a view");
+        let (texel, matrix) = (view.texel_size_world(), view.clip_from_render());
+        // The map's axes are found from its matrix.
+        let axis = |row: usize| matrix.row(row).truncate().as_dvec3().normalize();
+        let axes = [(axis(0), f64::from(texel.x)), (axis(1), f64::from(texel.y))];
+        let steps = || (-60..=60).map(|step| f64::from(step) * 0.25);
+        let floor = steps().flat_map(|x| steps().map(move |z| DVec3::new(x, 0.0, z)));
+        let floor: Vec<_> = floor
+            .map(|from_middle| (middle + from_middle).as_vec3().as_dvec3())
+            .collect();
+        let points: Vec<_> = floor
+            .iter()
+            .map(|position| Point::rounded(*position, DVec3::Y))
+            .collect();
+        for (position, seen) in floor.iter().zip(ask.points(gpu, &points)) {
+            let from_middle = *position - middle;
+            // This is how many texels the position is outside the box, seen from the light.
+            let outside = axes
+                .map(|(axis, texel)| (axis.dot(from_middle).abs() - axis.abs().dot(half)) / texel);
+            let outside = outside[0].max(outside[1]);
+            // Positions and box are rounded by far less than a hundredth of a texel.
+            if outside < 0.99 {
+                assert_eq!(seen, 0.0, "{step}: {position} is {outside} texels outside");
+                reached = reached.max(outside);
+            } else if outside > 1.01 {
+                assert_eq!(seen, 1.0, "{step}: {position} is {outside} texels outside");
+            }
+        }
+    }
+    assert!(reached > 0.5, "{reached}");
+}
+
 /// Checks that a lamp's shadows fade toward the end of its range.
 #[test]
 fn a_lamps_shadows_fade_before_its_range() {

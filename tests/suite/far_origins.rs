@@ -218,7 +218,8 @@ fn scan(case: &Case, scene: &Scene, casters: &[MeshCaster]) -> usize {
         let report = match record {
             Ok(report) => report,
             Err(ShadowError::ViewNotRepresentable { .. }) => {
-                // `ShadowFrameDescriptor::origin` promises this: a frame is refused only from 2⁴⁷ texels on.
+                // A frame is refused where four steps exceed a texel of its extent. Margins and
+                // size steps make texels coarser than that, by a factor below eight.
                 let least_of_64 = (f64::from(case.map_size) / 64.0).min(1.0);
                 let (finest, _) = at_zero;
                 assert!(spacing * 32.0 > finest * least_of_64, "{what} is refused");
@@ -269,6 +270,54 @@ fn suns_of_any_origin_are_right_or_refused() {
         judged += scan(&case, &scene, &casters);
     }
     assert!(judged > 1500, "{judged}");
+}
+
+/// Checks that a frame is taken up to where four steps of f64 are as large as a texel of the extent
+/// that the error states, `2⁵⁰ extent / size`, and is refused beyond, as
+/// `ShadowFrameDescriptor::origin` and `ShadowError::ViewNotRepresentable` say.
+#[test]
+fn frames_are_taken_as_far_as_the_docs_say() {
+    let gpu = gpu();
+    let scene = Scene::new(gpu, &meshes(1.0));
+    let casters = scene.list();
+    for (cascades, stability, coverage) in Case::coverages(1.0) {
+        for map_size in [16_u32, 64, 256, 1024] {
+            let descriptor = DirectionalShadowDescriptor {
+                map_size,
+                cascades,
+                stability,
+                ..Default::default()
+            };
+            let mut shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");
+            let mut is_taken = |distance: f64| {
+                let frame = DirectionalFrame {
+                    origin: DVec3::X * distance,
+                    light: DirectionalLight::new(Vec3::NEG_Y),
+                    coverage,
+                    casters: &casters,
+                    receivers: &[],
+                };
+                shadow.reset_history();
+                match submitted(gpu, |encoder| shadow.record_frame(encoder, &frame)) {
+                    Ok(_) => Ok(()),
+                    Err(ShadowError::ViewNotRepresentable { extent_world, .. }) => {
+                        Err(extent_world)
+                    }
+                    Err(error) => panic!("{error}"),
+                }
+            };
+            let extent = is_taken(1e20).expect_err("far beyond any limit");
+            let limit = 2.0_f64.powi(50) * extent / f64::from(map_size.max(64));
+            // The scene itself is a few units away from its origin.
+            assert_eq!(
+                is_taken(0.99 * limit - 20.0),
+                Ok(()),
+                "{map_size} {stability:?}"
+            );
+            let refused = is_taken(1.01 * limit + 20.0);
+            assert!(refused.is_err(), "{map_size} {stability:?}: {extent}");
+        }
+    }
 }
 
 /// Where nothing casts, nothing is reported and nothing is refused, however far the origin is.

@@ -39,6 +39,7 @@ mod keeping;
 mod kept_origin;
 mod local_reach;
 mod mesh_errors;
+mod mesh_geometry;
 mod mesh_pipelines;
 mod mirrored_views;
 mod never_stale;

@@ -23,8 +23,8 @@ use crate::fixtures::view_member::member;
 const LIGHT: Vec3 = Vec3::new(0.3, -1.0, 0.2);
 const MAP_SIZE: u32 = 128;
 
-/// Holds a box of floor under a roof that extends far beyond the map on all sides: every position that the map covers
-/// is dark.
+/// Holds a box of floor, in a camera's view, under a roof that extends far beyond the map on all
+/// sides: every position that the map covers is dark.
 struct Hall {
     shadow: DirectionalShadow,
     probe: SunProbe,
@@ -42,19 +42,21 @@ impl Hall {
         };
         let mut shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");
         let roof = Mesh::cuboid(Vec3::new(-40.0, 2.0, -40.0), Vec3::new(40.0, 2.2, 40.0));
-        let scene = Scene::new(gpu, &[roof]);
+        let mut scene = Scene::new(gpu, &[roof]);
+        scene.casters[0].set_roles(true, false);
+        let camera = Camera::modern(DVec3::new(0.0, 20.0, 1.0), DVec3::ZERO, 0.9, 1.0);
         record(
             gpu,
             &mut shadow,
             &DirectionalFrame {
                 origin: DVec3::ZERO,
                 light: DirectionalLight::new(LIGHT),
-                coverage: Coverage::Bounds(Aabb::new(
+                coverage: Coverage::Camera(camera.view()),
+                casters: &scene.list(),
+                receivers: &[Aabb::new(
                     Vec3::new(-4.0, -0.5, -4.0),
                     Vec3::new(4.0, 0.5, 4.0),
-                )),
-                casters: &scene.list(),
-                receivers: &[],
+                )],
             },
         );
         Self {

@@ -83,6 +83,7 @@ fn own_bindings_give_the_same_bits() {
     let list = scene.list();
     let descriptor = DirectionalShadowDescriptor {
         map_size: 256,
+        fade: 0.5,
         ..Default::default()
     };
     let mut sun = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");
@@ -90,7 +91,7 @@ fn own_bindings_give_the_same_bits() {
     let frame = DirectionalFrame {
         origin: DVec3::ZERO,
         light: DirectionalLight::new(Vec3::new(0.6, -1.0, 0.3)),
-        coverage: Coverage::Camera(camera.view()),
+        coverage: Coverage::Camera(camera.view().with_max_distance(12.0)),
         casters: &list,
         receivers: &[],
     };

@@ -77,7 +77,9 @@ fn names_of_modules_are_there() {
 fn lit(position: vec3<f32>, normal: vec3<f32>) -> f32 {{
     let receiver: ShadowReceiver = shadow_receiver_{bias}_{kind}(views[1], position, normal);
     let holds: bool = shadow_view_holds(views[1], position);
-    let visibility: f32 = shadow_filter_{filter}(map, map_sampler, receiver);
+    var visibility: f32 = shadow_filter_{filter}(map, map_sampler, receiver);
+    visibility = shadow_limited_by_depth(views[1], position, visibility);
+    visibility = shadow_limited_by_distance(views[1], position, visibility);
     return select(views[1].anchor.x, visibility, receiver.inside && holds);
 }}"
                 );

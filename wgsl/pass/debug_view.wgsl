@@ -14,7 +14,7 @@ struct ShadowDebugView {
 @group(0) @binding(2) var shadow_debug_map: texture_2d_array<f32>;
 @group(0) @binding(3) var shadow_debug_sampler: sampler;
 
-// Returns the distance from the light along the ray through `texel` (from the middle of the map), as a fraction of the
+// Returns the distance from the light along the ray through `texel` (from the middle), as a fraction of the
 // light's reach. `tangents` is the ray's position in the plane of the map of a local light.
 fn shadow_debug_grey(view: ShadowViewUniform, texel: vec2<f32>, tangents: vec2<f32>) -> f32 {
     let last = view.map_size - 1.0;

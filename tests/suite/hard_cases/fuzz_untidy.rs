@@ -1,5 +1,6 @@
-//! Tests random scenes as people build them: grounds of any size that cast, with thickness, feet that are sunk into
-//! them, domes, and one object with broken bounds. All settings are the defaults, and receivers are compared with rays.
+//! Tests random scenes as people build them: grounds of any size that cast, with thickness, feet
+//! that are sunk into them, domes, and one object with broken or far too large bounds. All settings
+//! are the defaults, and receivers are compared with rays.
 //!
 //! The long run is `PROPTEST_CASES=10000 cargo test --test suite hard_cases::fuzz_untidy`.
 
@@ -12,10 +13,11 @@ use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use shadow_support::random::Random;
 use shadow_support::triangle::{Triangle, occluded};
+use wgpu_shadows::report::ViewReport;
 use wgpu_shadows::{Aabb, DirectionalShadowDescriptor, ShadowCaster};
 
 use super::fuzz_values::run;
-use super::stage::{Sun, Verdict, settled, shaped, shining};
+use super::stage::{Sun, Verdict, shaped, shining};
 use super::table;
 use crate::fixtures::frames::Coverage;
 use crate::fixtures::gpu::gpu;
@@ -34,7 +36,16 @@ struct Untidy {
     light: DVec3,
     eye: DVec3,
     dome: Option<f32>,
+    /// Is a coordinate of the bounds of an additional object.
     wild: Option<f32>,
+}
+
+/// Describes how coarse the map is around a receiver, in world units.
+struct Coarseness {
+    /// Is the size of a texel.
+    texel: f64,
+    /// Is the height within which an occluder may have no shadow.
+    gap: f64,
 }
 
 fn untidy() -> impl Strategy<Value = Untidy> {
@@ -65,9 +76,12 @@ fn untidy() -> impl Strategy<Value = Untidy> {
         },
     );
     let dome = prop::option::of(prop_oneof![Just(200.0_f32), Just(1e4_f32), Just(1e6_f32)]);
-    // The bounds of the additional object are not finite. Finite ones of such size would cost more texels than one
-    // cascade has.
-    let wild = prop::option::of(prop_oneof![Just(f32::NAN), Just(f32::INFINITY)]);
+    let far_too_large = (5.0..9.0_f64).prop_map(|exponent| 10_f64.powf(exponent) as f32);
+    let wild = prop::option::of(prop_oneof![
+        Just(f32::NAN),
+        Just(f32::INFINITY),
+        far_too_large
+    ]);
     (half, thickness, boxes, light, eye, dome, wild).prop_map(
         |(half, thickness, boxes, light, eye, dome, wild)| Untidy {
             half,
@@ -107,19 +121,48 @@ impl Untidy {
             casters.push(dome);
         }
         let wild = self.wild.map(|value| {
-            Watched::with_bounds(
-                shaped(&meshes[0]),
-                Aabb::new(Vec3::ZERO, Vec3::splat(value)),
-            )
+            let low = if value.is_finite() { -value } else { 0.0 };
+            let bounds = Aabb::new(Vec3::splat(low), Vec3::splat(value));
+            Watched::with_bounds(shaped(&meshes[0]), bounds)
         });
         let listed = casters.iter().map(|caster| caster as &dyn ShadowCaster);
         let list: Vec<_> = listed
             .chain(wild.iter().map(|caster| caster as &dyn ShadowCaster))
             .collect();
         let camera = Camera::modern(self.eye, DVec3::new(0.0, 0.3, 0.0), 0.9, 1.6);
-        let mut sun = Sun::new(&DirectionalShadowDescriptor::default());
-        let coverage = Coverage::Camera(camera.view());
-        sun.record(DVec3::ZERO, shining(self.light), coverage, &list, &[]);
+        // Finite bounds of such a size cost more texels than one cascade has.
+        let (cascades, max_distance) = match self.wild {
+            Some(value) if value.is_finite() => (4, 100.0),
+            _ => (1, f32::INFINITY),
+        };
+        let mut sun = Sun::new(&DirectionalShadowDescriptor {
+            cascades,
+            ..Default::default()
+        });
+        let coverage = Coverage::Camera(camera.view().with_max_distance(max_distance));
+        let report = sun.record(DVec3::ZERO, shining(self.light), coverage, &list, &[]);
+        let coarseness = |position: DVec3| {
+            if cascades == 1 {
+                // The boxes extend over three metres and their shadows over twelve metres at most,
+                // so that a map of 2048 texels has texels of 7 mm.
+                return Some(Coarseness {
+                    texel: 0.007,
+                    gap: 0.0,
+                });
+            }
+            let depth = -camera.pose.axes.z_axis.dot(position - camera.pose.eye);
+            let ends_behind = |view: &&ViewReport| {
+                let slice = view.slice.as_ref();
+                slice.is_some_and(|slice| f64::from(slice.depth_far) >= depth)
+            };
+            let view = report.views.iter().find(ends_behind)?;
+            // Behind bounds of such a size any ground counts as casting, whose own rounding the
+            // reported height contains, beside that of the depths.
+            Some(Coarseness {
+                texel: f64::from(view.texel_size_world.max_element()),
+                gap: f64::from(view.max_peter_panning_world),
+            })
+        };
 
         let triangles: Vec<Triangle> = meshes
             .iter()
@@ -127,9 +170,6 @@ impl Untidy {
             .collect();
         let light = self.light.as_vec3().as_dvec3();
         let dark = |position: DVec3| occluded(&triangles, position, -light, 0.0);
-        // The boxes extend over three metres and their shadows over twelve metres at most, so that a map of 2048 texels
-        // has texels of 7 mm. The margin is three of them, stretched by the slant of the light.
-        let margin = 3.0 * 0.007 / -self.light.y + 0.005;
         let mut random = Random::new(3);
         let mut verdict = Verdict::default();
         let (mut points, mut truths) = (Vec::new(), Vec::new());
@@ -140,8 +180,20 @@ impl Untidy {
             if !camera.sees(position, f64::INFINITY, 0.01) {
                 continue;
             }
+            let Some(Coarseness { texel, gap }) = coarseness(position) else {
+                continue;
+            };
+            // The margin is three texels, stretched by the slant of the light.
+            let margin = 3.0 * texel / -self.light.y + 0.005;
+            let here = dark(position);
+            let around = (0..12).map(|step| {
+                let angle = f64::from(step) * std::f64::consts::TAU / 12.0;
+                position + DVec3::new(angle.cos(), 0.0, angle.sin()) * margin
+            });
+            let mut around = around.flat_map(|place| [place, place + DVec3::Y * gap]);
+            let settled = around.all(|place| dark(place) == here);
             points.push(Point::rounded(position, DVec3::Y));
-            truths.push(settled(dark, position, margin));
+            truths.push(settled.then_some(here));
         }
         if !points.is_empty() {
             for (truth, seen) in truths.iter().zip(sun.ask(&points)) {
@@ -164,7 +216,7 @@ fn untidy_scenes_are_shadowed_as_the_truth_says() {
     let all = all.into_inner();
     assert!(all.dark > 500 && all.lit > 5000, "{all:?}");
     table::record(
-        "random grounds of half side 1 to 1e5, sheets and slabs, sunk feet, domes, broken bounds, everything default",
+        "random grounds of half side 1 to 1e5, sheets and slabs, sunk feet, domes, one object with broken bounds or, under four cascades, with bounds of +-1e5 to +-1e9, everything else default",
         "settled receivers as the truth says",
         all.words(),
     );

@@ -17,6 +17,7 @@ mod fuzz_casters;
 mod fuzz_pools;
 mod fuzz_reference;
 mod fuzz_untidy;
+mod fuzz_untidy_lamps;
 mod fuzz_values;
 mod giant_grounds;
 mod grounds;
