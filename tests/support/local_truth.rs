@@ -22,7 +22,7 @@ pub struct Lookup {
     pub light: DVec3,
     /// How far aside its footprint reaches, as a tangent seen from the light.
     pub tangent: f64,
-    /// How far along the normal rounding may move it.
+    /// How far along the normal rounding may move it, with its footprint.
     pub lift: f64,
     /// By which share of its way to the light rounding may move it.
     pub nearer: f64,
@@ -61,7 +61,14 @@ impl Settled {
             light + direction * (normal.dot(from_light) / normal.dot(direction))
         });
         let mut all_same = true;
-        for at in around.chain([place + normal * lift]) {
+        // The lookup lifts the plane by a way toward the light, along which the texel is the same.
+        let share = (lift / -normal.dot(from_light)).min(0.5);
+        let moves = if lift > 0.0 { 3 } else { 1 };
+        let lifted = |at: DVec3| {
+            let moved = [at, at + normal * lift, at + (light - at) * share];
+            moved.into_iter().take(moves)
+        };
+        for at in around.chain([place]).flat_map(lifted) {
             all_same &= dark_at(at) == dark && dark_at(at + (light - at) * nearer) == dark;
         }
         if all_same {
