@@ -5,6 +5,7 @@
 //! The long run is `PROPTEST_CASES=10000 cargo test --test suite hard_cases::fuzz_untidy_lamps`.
 
 use std::cell::RefCell;
+use std::ops::Range;
 
 use glam::{DVec2, DVec3, Vec3};
 use proptest::prelude::*;
@@ -99,14 +100,18 @@ impl Lit {
     }
 }
 
-/// Returns whether an edge of a shadow crosses the footprint of a lookup, as [`Lamp::truth`] has
-/// it, by many more rays than decide there: a corner may lie between those.
+/// Returns whether an edge of a shadow or of the surface crosses the footprint of a lookup, as
+/// [`Lamp::truth`] has it, by many more rays than decide there: a corner may lie between those. Beyond
+/// an edge of the surface, rasterizers snap vertices to 1/256 of a texel, so that a side that falls
+/// away steeply may reach over the edge and darken a corner of the footprint.
 fn has_edge_near(scene: &Scene, light: DVec3, point: &Point, tangent: f64) -> bool {
-    let hidden = |from: DVec3| {
+    let meets = |at: DVec3, along: Range<f64>| {
         let hits = scene.triangles.iter();
-        let mut hits = hits.filter_map(|triangle| triangle.hit(from, light - from));
-        hits.any(|along| (1e-7..1.0).contains(&along))
+        let mut hits = hits.filter_map(|triangle| triangle.hit(light, at - light));
+        hits.any(|hit| along.contains(&hit))
     };
+    let hidden = |at| meets(at, 0.0..1.0 - 1e-6);
+    let on_surface = |at| meets(at, 1.0 - 1e-6..1.0 + 1e-6);
     let [place, normal] = [point.position, point.normal].map(|at| Vec3::from(at).as_dvec3());
     let from_light = place - light;
     let side = from_light.normalize().any_orthonormal_vector();
@@ -118,7 +123,8 @@ fn has_edge_near(scene: &Scene, light: DVec3, point: &Point, tangent: f64) -> bo
     disc.any(|ray| {
         let aside = (side * ray.x + across * ray.y) * tangent * from_light.length();
         let direction = from_light + aside;
-        hidden(light + direction * (normal.dot(from_light) / normal.dot(direction))) != here
+        let at = light + direction * (normal.dot(from_light) / normal.dot(direction));
+        hidden(at) != here || !on_surface(at)
     })
 }
 
