@@ -84,7 +84,8 @@
 //! | many spot or point lights, which come and go | [`pool::SpotShadowPool`], [`pool::OmniShadowPool`] | one or six for each slot, with a budget of views per frame |
 //!
 //! All lights of a frame are recorded with the same [`ShadowFrame`]. A sun over a scene as deep as it is wide needs one cascade; a
-//! view to the horizon needs three or four ([`DirectionalShadowDescriptor::cascades`], [`CascadeSplit`]).
+//! view to the horizon needs three or four ([`DirectionalShadowDescriptor::cascades`], [`CascadeSplit`]), and under
+//! [`CascadeLayout::Automatic`] the library finds how many, where they end, and how many texels each gets.
 //! [`DirectionalShadowDescriptor::blend`] hides where one ends. [`ShadowMaps::report`] tells how fine the maps of the last frame are
 //! and what was drawn; [`debug::DebugView`] draws the maps.
 //!
@@ -225,7 +226,7 @@ pub mod shader;
 pub use aabb::Aabb;
 pub use cast::{CasterPipeline, MeshCaster, Revision, ShadowCaster};
 pub use error::ShadowError;
-pub use fit::{CameraView, CascadeSplit, ShadowView, Stability};
+pub use fit::{CameraView, CascadeLayout, CascadeSplit, ShadowView, Stability};
 pub use gpu::DepthFormat;
 pub use light::{
     Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniLight,
@@ -255,7 +256,7 @@ pub mod pool {
 /// Contains reports of what lights did in a frame and how fine their maps are.
 pub mod report {
     pub use crate::cast::BrokenBounds;
-    pub use crate::fit::SliceReport;
+    pub use crate::fit::{SliceReport, TexelRect};
     pub use crate::receive::{ShadowReport, ViewReport, ViewStatus};
 }
 

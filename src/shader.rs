@@ -46,6 +46,7 @@ pub(crate) const CASTER_BUILTIN_MULTIVIEW: ShaderModule = module!(
     "pass/caster_builtin_multiview.wgsl",
     ["caster_multiview"]
 );
+pub(crate) const FULLSCREEN: ShaderModule = module!("fullscreen", "pass/fullscreen.wgsl", []);
 pub(crate) const DEBUG_VIEW: ShaderModule = module!(
     "debug_view",
     "pass/debug_view.wgsl",
@@ -131,7 +132,7 @@ pub const MODULES: &[ShaderModule] = &[
     CASTER_BUILTIN,
     CASTER_MULTIVIEW,
     CASTER_BUILTIN_MULTIVIEW,
-    module!("fullscreen", "pass/fullscreen.wgsl", []),
+    FULLSCREEN,
     DEBUG_VIEW,
     CASCADE_TINT,
     GATHER_PROBE,

@@ -26,6 +26,7 @@ struct ShadowPlace {
     depth: f32,
     // Is the reciprocal of the world distance along the axis of a local light; 1 for a directional one.
     inverse_w: f32,
+    // Is the number of the view, which is also that of its layer unless views share a layer.
     layer: u32,
     // Is the position of the map's first texel in a grid that is fixed in the world.
     grid: u32,
@@ -37,7 +38,7 @@ struct ShadowPlace {
 fn shadow_directional_place(view: ShadowViewUniform, layer: u32, light: vec3<f32>) -> ShadowPlace {
     let texel = light.xy * view.mapping.texel_scale + view.mapping.texel_offset;
     let depth = light.z * view.mapping.depth_scale + view.depth_offset;
-    let inside = all(abs(texel) < view.inner) & (depth >= 0.0);
+    let inside = all(abs(texel) < view.mapping.inner) & (depth >= 0.0);
     return ShadowPlace(light, texel, depth, 1.0, layer, view.grid, inside);
 }
 
@@ -65,7 +66,7 @@ fn shadow_local_place(
 ) -> ShadowPlace {
     let inverse_w = -1.0 / light.z;
     let texel = light.xy * inverse_w * mapping.texel_scale + mapping.texel_offset;
-    let inside = all(abs(texel) < view.inner) & (light.z < 0.0) & (dot(light, light) < view.range_squared);
+    let inside = all(abs(texel) < view.mapping.inner) & (light.z < 0.0) & (dot(light, light) < view.range_squared);
     return ShadowPlace(light, texel, mapping.depth_scale * inverse_w, inverse_w, layer, grid, inside);
 }
 
@@ -101,7 +102,7 @@ fn shadow_view_holds(view: ShadowViewUniform, position: vec3<f32>) -> bool {
 // Returns the weight of a cascade at a place that it covers, where cascades blend: one, and less in the last texels
 // before its border. It is never zero, so that a position in one cascade alone has a weighted mean.
 fn shadow_blend_weight(view: ShadowViewUniform, place: ShadowPlace) -> f32 {
-    let from_border = view.inner - abs(place.texel_from_middle);
+    let from_border = view.mapping.inner - abs(place.texel_from_middle);
     return clamp(min(from_border.x, from_border.y) * view.blend_scale, 1.0 / 4096.0, 1.0);
 }
 
@@ -116,7 +117,7 @@ fn shadow_receiver(
     gradient: vec2<f32>,
 ) -> ShadowReceiver {
     var receiver: ShadowReceiver;
-    receiver.texel = texel_from_middle + view.middle;
+    receiver.texel = texel_from_middle + mapping.middle;
     receiver.depth = depth;
     receiver.gradient = gradient;
     receiver.layer = place.layer;

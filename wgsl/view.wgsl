@@ -10,10 +10,8 @@
 // space for a directional light, and tangents of angles for a local one. Shaders choose among the mappings of a light
 // by an index that varies, so it holds no more than they need then.
 struct ShadowMapping {
-    // texel = plane * texel_scale + texel_offset, counted from the middle. The offset is 1e30 where nothing
-    // casts into the view, which then covers no position.
+    // texel = plane * texel_scale + texel_offset, counted from the middle.
     texel_scale: vec2<f32>,
-    texel_offset: vec2<f32>,
     // Is the size of a texel in units of the plane.
     texel_size: vec2<f32>,
     // For a directional light it is the ndc depth of a world unit; for a local one the world distance of the near
@@ -22,6 +20,14 @@ struct ShadowMapping {
     // For a directional light it is the world distance along the normal by which a receiver is moved for the rounding
     // of render coordinates; for a local one the rounding error of a comparison in relation to the depth.
     rounding: f32,
+    // Is the middle of the part of the map in which positions have shadows, in texel coordinates. A lookup needs no
+    // more than the members up to here once it has found its view.
+    middle: vec2<f32>,
+    // Is 1e30 where nothing casts into the view, which then covers no position.
+    texel_offset: vec2<f32>,
+    // Is the distance from the middle, in texels along x and y, within which a lookup stays inside the view's part of
+    // the map, with kernel and bias included, and positions have shadows.
+    inner: vec2<f32>,
 }
 
 struct ShadowViewUniform {
@@ -41,12 +47,7 @@ struct ShadowViewUniform {
     // Is the position of the first texel in a grid that is fixed in the world, modulo 65536: x in the low 16 bits, y in
     // the high 16 bits.
     grid: u32,
-    // Is the distance from the middle, in texels along x and y, within which a lookup stays inside the map, with kernel
-    // and bias included, and positions have shadows.
-    inner: vec2<f32>,
-    // Is the middle of the part of the map in which positions have shadows, in texel coordinates.
-    middle: vec2<f32>,
-    // Is the number of texels per side of the map, and its reciprocal.
+    // Is the number of texels per side of the layer, and its reciprocal.
     map_size: f32,
     uv_per_texel: f32,
     // Are the rounding errors of a comparison: in ndc depth, and across the map in texels.

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, ValueEnum};
 use shadow_support::gpu::GpuRequest;
-use wgpu_shadows::{Bias, CascadeSplit, Filter};
+use wgpu_shadows::{Bias, CascadeLayout, CascadeSplit, Filter};
 
 /// Renders a glTF 2.0 file with shadows, offscreen, to a PNG.
 #[derive(Parser, Debug)]
@@ -35,9 +35,10 @@ pub struct Options {
     /// Selects auto, normal-offset, or manual:CONSTANT,SLOPE in world units.
     #[arg(long, default_value = "auto", value_parser = bias)]
     pub bias: Bias,
-    /// Sets the number of cascades of a directional light, 1 to 8.
-    #[arg(long, default_value_t = 1)]
-    pub cascades: u32,
+    /// Sets the number of cascades of a directional light, 1 to 8, each with a map of its own. Without it one map is
+    /// divided among cascades by predicted error.
+    #[arg(long)]
+    pub cascades: Option<u32>,
     /// Sets the depths along the view at which all cascades but the last end, as in 10,30,80; without it they have
     /// equal ratios.
     #[arg(long, value_delimiter = ',', num_args = 1..=7)]
@@ -62,7 +63,19 @@ pub struct Options {
     pub frames: u32,
 }
 
+/// Is the largest number of cascades where their number is not given.
+const MOST_CASCADES: u32 = 4;
+
 impl Options {
+    /// Returns the number of cascades and how texels are divided among them.
+    pub fn cascades(&self) -> (u32, CascadeLayout) {
+        match (self.cascades, self.splits.len()) {
+            (Some(cascades), _) => (cascades, CascadeLayout::Fixed),
+            (None, 0) => (MOST_CASCADES, CascadeLayout::Automatic),
+            (None, ends) => (ends as u32 + 1, CascadeLayout::Fixed),
+        }
+    }
+
     /// Returns where the cascades end. A number of `--splits` that is not one fewer than `--cascades` is refused by the
     /// light.
     pub fn split(&self) -> CascadeSplit<'_> {

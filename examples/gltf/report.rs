@@ -42,6 +42,8 @@ fn maps_report(name: &str, report: &ShadowReport, lights: &[usize]) -> Value {
         .map(|view| {
             json!({
                 "layer": view.layer,
+                "texels": [view.texels.min.to_array(), view.texels.size.to_array()],
+                "depth_far": view.slice.map(|slice| slice.depth_far),
                 "status": format!("{:?}", view.status),
                 "casters": view.casters,
                 "triangles": view.triangles,
@@ -59,6 +61,7 @@ fn maps_report(name: &str, report: &ShadowReport, lights: &[usize]) -> Value {
         "lights": lights,
         "views": views,
         "passes": report.passes,
+        "predicted_error": report.predicted_error,
         "draws": report.draws(),
         "bytes_held": report.bytes_held,
     })

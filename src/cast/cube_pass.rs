@@ -9,6 +9,7 @@ use crate::cast::layer_cache::ViewDraws;
 use crate::cast::view_uniform::{CasterViewUniform, VIEW_UNIFORM_BYTES, multiview_layout};
 use crate::cast::{CasterPipeline, FrameCasters};
 use crate::error::DeviceError;
+use crate::fit::TexelRect;
 use crate::gpu::{
     ALL_FACES_MASK, DepthMap, FACE_COUNT, PendingUpload, UploadBuffer, capture_device_errors,
     supports_cube_multiview,
@@ -92,7 +93,7 @@ impl CubePass {
         clipped_away.clip_from_anchor[3] = [0.0, 0.0, -1.0, 1.0];
         let mut uniforms = [clipped_away; FACE_COUNT as usize];
         for draws in views {
-            uniforms[draws.view.layer() as usize] = CasterViewUniform::of(&draws.view);
+            uniforms[draws.view.index() as usize] = CasterViewUniform::of(&draws.view);
         }
         Ok(Some(PreparedCubePass {
             upload: self
@@ -124,7 +125,7 @@ impl CubePass {
         let defaults = PassDefaults {
             view_group: &self.bind_group,
             offsets: &[],
-            map_size: map.size(),
+            texels: TexelRect::whole(map.size()),
         };
         let drawn = prepared.casters.iter().copied();
         draw_casters(

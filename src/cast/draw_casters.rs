@@ -2,6 +2,7 @@
 
 use crate::ShadowView;
 use crate::cast::{CasterPipeline, FrameCasters};
+use crate::fit::TexelRect;
 
 /// Is a caster that a pass draws.
 #[derive(Clone, Copy)]
@@ -16,8 +17,8 @@ pub(crate) struct PassDefaults<'a> {
     /// Is bind group 0: the view or views being rendered.
     pub view_group: &'a wgpu::BindGroup,
     pub offsets: &'a [u32],
-    /// Is the number of texels per side of the viewport.
-    pub map_size: u32,
+    /// Is the viewport and the scissor rectangle.
+    pub texels: TexelRect,
 }
 
 impl PassDefaults<'_> {
@@ -25,16 +26,22 @@ impl PassDefaults<'_> {
         pass.set_bind_group(0, self.view_group, self.offsets);
     }
 
+    /// Limits the pass to the rectangle of the view.
+    pub fn set_rect(&self, pass: &mut wgpu::RenderPass<'_>) {
+        let TexelRect { min, size } = self.texels;
+        let [x, y, width, height] = [min.x, min.y, size.x, size.y].map(|texels| texels as f32);
+        pass.set_viewport(x, y, width, height, 0.0, 1.0);
+        pass.set_scissor_rect(min.x, min.y, size.x, size.y);
+    }
+
     /// Undoes what the engine's own commands may have changed.
     fn restore(&self, pass: &mut wgpu::RenderPass<'_>) {
-        let size = self.map_size;
-        pass.set_viewport(0.0, 0.0, size as f32, size as f32, 0.0, 1.0);
-        pass.set_scissor_rect(0, 0, size, size);
+        self.set_rect(pass);
         self.set_group(pass);
     }
 }
 
-/// Draws casters one after the other. Each caster finds its pipeline, bind group 0, the whole map as viewport and
+/// Draws casters one after the other. Each caster finds its pipeline, bind group 0, the view's rectangle as viewport and
 /// scissor rectangle, and depths from 0 to 1, whatever the caster before it has set. They are set again only after a
 /// caster that may have changed them: in software, setting bind group and scissor rectangle costs several times what a
 /// small draw costs. `variant` returns the one of a caster's pipelines that matches the pass; a caster for which it

@@ -137,7 +137,8 @@ impl LayerCache {
         if !can_copy || !self.is_of(&draws.view) {
             return Plan::All;
         }
-        let texels = u64::from(draws.view.map_size()).pow(2);
+        let size = draws.view.texels().size;
+        let texels = u64::from(size.x) * u64::from(size.y);
         let static_cost = draw_cost_texels(self.static_casters(draws, casters), casters);
         if self.static_cache.is_valid_for(draws, casters) {
             let cached_cost = draw_cost_texels(self.static_cache.casters.iter().copied(), casters);

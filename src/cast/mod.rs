@@ -12,7 +12,7 @@
 //! mesh.rs                MeshCaster: a ready-made caster; mesh_descriptor.rs, mesh_check.rs: its descriptor and checks
 //! closed.rs              which meshes are closed solids; mesh_shape.rs: which cannot shadow themselves
 //! layer_cache.rs         what a layer caches, and what a frame must draw
-//! recorder.rs            the passes
+//! recorder.rs            the passes; rect_clear.rs: how a part of a layer is cleared
 //! draw_casters.rs        the loop that draws casters in them
 //! cube_pass.rs           six faces in one pass; cube_rule.rs: when that is cheaper than a pass for each
 //! ```
@@ -35,6 +35,7 @@ mod pipeline_build;
 mod pipeline_descriptor;
 mod pipeline_reads;
 mod recorder;
+mod rect_clear;
 mod view_uniform;
 
 pub use caster::{Revision, ShadowCaster};
@@ -50,7 +51,7 @@ pub use pipeline::CasterPipeline;
 pub use pipeline_descriptor::{
     CasterPipelineDescriptor, CasterVertex, ModelTransform, PositionAttribute,
 };
-pub(crate) use recorder::Recorder;
+pub(crate) use recorder::{Recorder, RecorderKind};
 pub(crate) use view_uniform::VIEW_UNIFORM_BYTES;
 
 /// Clears a map to the far plane (reversed depth): nothing casts.

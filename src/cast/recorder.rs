@@ -3,6 +3,7 @@
 use crate::cast::cube_pass::{CubePass, PreparedCubePass};
 use crate::cast::draw_casters::{DrawnCaster, PassDefaults, draw_casters};
 use crate::cast::layer_cache::{LayerCache, Plan, ViewDraws};
+use crate::cast::rect_clear::rect_clear_pipeline;
 use crate::cast::view_uniform::{CasterViewUniform, VIEW_UNIFORM_BYTES, view_layout};
 use crate::cast::{CLEAR, CasterPipeline, FrameCasters};
 use crate::error::DeviceError;
@@ -17,8 +18,11 @@ pub(crate) struct Recorder {
     stride: u64,
     bind_group: wgpu::BindGroup,
     layers: Vec<Layer>,
-    /// Is false on wgpu's OpenGL backend, which copies no depth textures; there all casters of a view are drawn again.
+    /// Is false on wgpu's OpenGL backend, which copies no depth textures, and where views share a layer, since only
+    /// whole layers of depth are copied; there all casters of a view are drawn again.
     can_copy: bool,
+    /// Clears rectangles where all views share one layer; `None` where each has its own.
+    rect_clear: Option<wgpu::RenderPipeline>,
     /// Is present where the layers are the faces of a cube and the device can draw them at once.
     cube: Option<CubePass>,
 }
@@ -31,6 +35,17 @@ struct Layer {
     static_cache: Option<DepthMap>,
     /// States that the device could not make one.
     static_cache_failed: bool,
+}
+
+/// Tells how the views of a recorder lie in its map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum RecorderKind {
+    /// Each view has a layer of its own.
+    Layers,
+    /// The views are the six faces of one cube, each with a layer of its own.
+    Cube,
+    /// The views are rectangles of one layer of this format.
+    SharedLayer(DepthFormat),
 }
 
 /// Holds everything that could fail, made before the encoder is touched.
@@ -50,19 +65,19 @@ impl PreparedViews<'_> {
 }
 
 impl Recorder {
-    /// Makes a recorder for maps of `layers` layers; `is_cube` states that they are the six faces of one cube.
+    /// Makes a recorder for `views` views, each with a layer of its own unless they share one.
     pub fn new(
         device: &wgpu::Device,
         label: &str,
-        layers: u32,
-        is_cube: bool,
+        views: u32,
+        kind: RecorderKind,
     ) -> Result<Self, ShadowError> {
         let alignment = u64::from(device.limits().min_uniform_buffer_offset_alignment);
         let stride = VIEW_UNIFORM_BYTES.next_multiple_of(alignment);
         let uniforms = UploadBuffer::new(
             device,
             &format!("{label} caster views"),
-            stride * u64::from(layers),
+            stride * u64::from(views),
         )?;
         let create = || {
             device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -84,8 +99,12 @@ impl Recorder {
                 refusal,
             })
         })?;
-        let layers = (0..layers).map(|layer| Layer {
-            label: format!("{label} layer {layer}"),
+        let rect_clear = match kind {
+            RecorderKind::SharedLayer(format) => Some(rect_clear_pipeline(device, label, format)?),
+            RecorderKind::Layers | RecorderKind::Cube => None,
+        };
+        let layers = (0..views).map(|view| Layer {
+            label: format!("{label} layer {view}"),
             cache: LayerCache::default(),
             static_cache: None,
             static_cache_failed: false,
@@ -96,8 +115,10 @@ impl Recorder {
             stride,
             bind_group,
             layers: layers.collect(),
-            can_copy: device.adapter_info().backend != wgpu::Backend::Gl,
-            cube: if is_cube {
+            // Depth is copied by whole layers alone.
+            can_copy: device.adapter_info().backend != wgpu::Backend::Gl && rect_clear.is_none(),
+            rect_clear,
+            cube: if kind == RecorderKind::Cube {
                 CubePass::new(device, label)?
             } else {
                 None
@@ -107,13 +128,13 @@ impl Recorder {
 
     /// Returns how many depth passes `draws` needs.
     pub fn passes(&self, draws: &ViewDraws, casters: &FrameCasters<'_>) -> u32 {
-        let layer = &self.layers[draws.view.layer() as usize];
+        let layer = &self.layers[draws.view.index() as usize];
         layer.cache.plan(draws, casters, self.can_copy).passes()
     }
 
     /// Returns whether the layer of `view` holds that view, whatever its casters.
     pub fn holds(&self, view: &ShadowView) -> bool {
-        self.layers[view.layer() as usize].cache.is_of(view)
+        self.layers[view.index() as usize].cache.is_of(view)
     }
 
     /// Returns the device memory, in bytes, of the static-caster caches.
@@ -136,7 +157,7 @@ impl Recorder {
         self.bytes
             .resize(self.stride as usize * self.layers.len(), 0);
         for draws in views.iter_mut() {
-            let layer = &mut self.layers[draws.view.layer() as usize];
+            let layer = &mut self.layers[draws.view.index() as usize];
             draws.plan = layer.cache.plan(draws, casters, self.can_copy);
             if draws.plan == Plan::RenewStaticCache && !layer.make_static_cache(device, map) {
                 draws.plan = Plan::All;
@@ -153,7 +174,7 @@ impl Recorder {
             let render_reach = layer.cache.render_reach_after(draws);
             draws.view = draws.view.over_depths_from(render_reach);
             let uniform = CasterViewUniform::of(&draws.view);
-            let start = self.stride as usize * draws.view.layer() as usize;
+            let start = self.stride as usize * draws.view.index() as usize;
             self.bytes[start..][..size_of_val(&uniform)]
                 .copy_from_slice(bytemuck::bytes_of(&uniform));
         }
@@ -192,11 +213,11 @@ impl Recorder {
             let mut caches: Vec<LayerCache> =
                 self.layers.iter_mut().map(Layer::take_cache).collect();
             for draws in views.iter() {
-                caches[draws.view.layer() as usize].replace(draws, casters);
+                caches[draws.view.index() as usize].replace(draws, casters);
             }
             cube.record(encoder, map, prepared, views, casters);
             for draws in views.iter() {
-                let index = draws.view.layer() as usize;
+                let index = draws.view.index() as usize;
                 self.layers[index].cache = std::mem::take(&mut caches[index]);
             }
             return 1;
@@ -210,7 +231,7 @@ impl Recorder {
             }
             let (own_pipelines, others) = pipelines.split_at(draws.casters.len());
             pipelines = others;
-            let index = draws.view.layer();
+            let index = draws.view.index();
             let layer = &mut self.layers[index as usize];
             let mut cache = layer.take_cache();
             cache.replace(draws, casters);
@@ -219,10 +240,11 @@ impl Recorder {
                 label: &layer.label,
                 view_group: (&self.bind_group, (self.stride * u64::from(index)) as u32),
                 format: map.format(),
+                rect_clear: self.rect_clear.as_ref(),
             };
             let all = draws.casters.iter().zip(own_pipelines);
             let all = all.map(|(&index, &pipeline)| DrawnCaster { index, pipeline });
-            let (target, view) = (map.layer_view(index), &draws.view);
+            let (target, view) = (map.layer_view(draws.view.layer()), &draws.view);
             passes += draws.plan.passes();
             match &layer.static_cache {
                 Some(static_cache) if draws.plan != Plan::All => {
@@ -245,7 +267,7 @@ impl Recorder {
                     }
                     pass.encoder.copy_texture_to_texture(
                         static_cache.layer_copy(0),
-                        map.layer_copy(index),
+                        map.layer_copy(draws.view.layer()),
                         map.layer_extent(),
                     );
                     let moving = all.filter(|caster| !is_static(caster));
@@ -295,6 +317,8 @@ struct LayerPass<'a> {
     label: &'a str,
     view_group: (&'a wgpu::BindGroup, u32),
     format: DepthFormat,
+    /// Clears the rectangle of a view that shares its layer with others.
+    rect_clear: Option<&'a wgpu::RenderPipeline>,
 }
 
 impl LayerPass<'_> {
@@ -306,10 +330,15 @@ impl LayerPass<'_> {
         drawn: impl Iterator<Item = DrawnCaster<'c>>,
         casters: &FrameCasters<'_>,
     ) {
+        // The texels of the other views in the layer are kept.
+        let attachment_load = match self.rect_clear {
+            Some(_) => wgpu::LoadOp::Load,
+            None => load,
+        };
         let mut pass = self.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(self.label),
             color_attachments: &[],
-            depth_stencil_attachment: Some(super::depth_attachment(target, load)),
+            depth_stencil_attachment: Some(super::depth_attachment(target, attachment_load)),
             timestamp_writes: None,
             occlusion_query_set: None,
             multiview_mask: None,
@@ -318,8 +347,13 @@ impl LayerPass<'_> {
         let defaults = PassDefaults {
             view_group: group,
             offsets: &[offset],
-            map_size: view.map_size(),
+            texels: view.texels(),
         };
+        if let (Some(pipeline), wgpu::LoadOp::Clear(_)) = (self.rect_clear, load) {
+            defaults.set_rect(&mut pass);
+            pass.set_pipeline(pipeline);
+            pass.draw(0..3, 0..1);
+        }
         // The planning of the frame has checked that there is a pipeline for the format.
         let of_format = |pipeline: &'c CasterPipeline| pipeline.wgpu_pipeline(self.format);
         draw_casters(&mut pass, &defaults, view, drawn, casters, of_format);

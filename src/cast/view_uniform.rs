@@ -21,7 +21,7 @@ impl CasterViewUniform {
         Self {
             clip_from_anchor: view.clip_from_anchor().to_cols_array_2d(),
             anchor_render: view.anchor_render().to_array(),
-            map_size: view.map_size() as f32,
+            map_size: view.texels().size.max_element() as f32,
         }
     }
 }

@@ -118,7 +118,11 @@ impl DebugView {
     ) -> Result<(), DebugViewError> {
         self.check_device(maps)?;
         let sampled = maps.sampled();
-        let layers = sampled.view_count;
+        let layers = if sampled.shares_layer {
+            1
+        } else {
+            sampled.view_count
+        };
         let (pipeline, first_layer) = match image {
             DebugImage::Layer(layer) => (&self.layer, layer),
             DebugImage::Cross => (&self.cross, 0),
@@ -139,9 +143,14 @@ impl DebugView {
         for (view, uniform) in views.iter_mut().zip(shown) {
             *view = *uniform;
         }
+        if sampled.shares_layer {
+            // A view with casters tells that the layer they share is not empty.
+            let holds = |view: &&ShadowViewUniform| view.mapping.texel_size[0] > 0.0;
+            views[0] = *shown.iter().find(holds).unwrap_or(&views[0]);
+        }
         // White is where the last receiver is seen, however far the light shines.
         for drawn in maps.views() {
-            let index = drawn.layer().checked_sub(first_layer);
+            let index = drawn.index().checked_sub(first_layer);
             if let Some(view) = index.and_then(|index| views.get_mut(index as usize)) {
                 view.range = view.range.min(drawn.reach_world() as f32);
             }

@@ -1,7 +1,7 @@
 //! Turns the engine's camera, given as any pair of matrices, into half-spaces and depth along the
 //! view.
 
-use glam::{DMat4, DVec3, DVec4, Mat4};
+use glam::{DMat4, DVec2, DVec3, DVec4, Mat4};
 
 use crate::ShadowError;
 use crate::fit::image_corners::{ImageCorners, SliceSphere};
@@ -163,6 +163,21 @@ impl CameraFrustum {
         } else {
             height
         }
+    }
+
+    /// Returns the ray through a place of the image, from 0 to 1 along x and y: its point at depth
+    /// zero, and what a unit of depth along the view adds.
+    pub fn ray(&self, place: DVec2) -> (DVec3, DVec3) {
+        let at = |depth| {
+            let [bottom_left, bottom_right, top_left, top_right] = self.corners.at(depth);
+            let bottom = bottom_left.lerp(bottom_right, place.x);
+            bottom.lerp(top_left.lerp(top_right, place.x), place.y)
+        };
+        let (start, next) = (at(0.0), at(1.0));
+        (
+            self.render_from_view.transform_point3(start),
+            self.render_from_view.transform_vector3(next - start),
+        )
     }
 
     /// Returns a sphere that holds the slice between two depths along the view.

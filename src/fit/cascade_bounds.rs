@@ -1,6 +1,6 @@
 //! Fits the light-space bounds of one cascade of a directional light.
 
-use glam::DVec3;
+use glam::{DVec3, UVec2};
 
 use crate::fit::axes::LightBox;
 use crate::fit::caster_parts::CasterPart;
@@ -33,6 +33,8 @@ pub(crate) struct Cascade<'a> {
     /// Holds the parts of divided casters, the highest first. Only these parts of a divided caster
     /// count.
     pub parts: &'a [CasterPart],
+    /// Counts the texels of its map along x and y.
+    pub size_texels: UVec2,
     /// Holds what cameras see.
     pub seen: &'a [Seen],
     /// Holds the depths along the view between which the cascade lies; `None` without a camera.
@@ -50,18 +52,8 @@ impl Cascade<'_> {
         held: Option<&HeldBounds>,
     ) -> Option<HeldBounds> {
         let limits = self.limits;
-        let follows_casters = match self.input.region {
-            Region::Bounds(_) => false,
-            Region::Everything => true,
-            Region::Cameras(_) => limits.stability == Stability::TightFit,
-        };
-        let gap_share = if follows_casters {
-            (limits.gap_texels / f64::from(limits.map_size)).min(MAX_GAP_SHARE)
-        } else {
-            0.0
-        };
-        let shadows = self.shadow_box(required, spacing, gap_share)?;
-        let received = if follows_casters {
+        let shadows = self.shadows(required, spacing)?;
+        let received = if self.follows_casters() {
             self.shadowed_part(required, &shadows, spacing)
         } else {
             *required
@@ -72,13 +64,13 @@ impl Cascade<'_> {
             .max(spacing.finest_texel());
         let (min, max) = spacing.grown(
             (received.min.truncate(), received.max.truncate()),
-            limits.map_size,
+            self.size_texels,
             texel_floor,
         );
         let request = MapRectRequest {
             min,
             max,
-            map_size: limits.map_size,
+            size_texels: self.size_texels,
             margin_texels: limits.margin_texels,
             texel_floor,
             full_half_side: f64::INFINITY,
@@ -103,6 +95,27 @@ impl Cascade<'_> {
             rect,
             depth: depth(nearest),
         })
+    }
+
+    /// Returns whether the bounds hold no more of the receivers than what casters reach.
+    fn follows_casters(&self) -> bool {
+        match self.input.region {
+            Region::Bounds(_) => false,
+            Region::Everything => true,
+            Region::Cameras(_) => self.limits.stability == Stability::TightFit,
+        }
+    }
+
+    /// Returns the light-space box of all that visibly shadows receivers in `required`, or `None`
+    /// where nothing does.
+    pub fn shadows(&self, required: &LightBox, spacing: Spacing) -> Option<LightBox> {
+        let gap_share = if self.follows_casters() {
+            let side = f64::from(self.size_texels.min_element());
+            (self.limits.gap_texels / side).min(MAX_GAP_SHARE)
+        } else {
+            0.0
+        };
+        self.shadow_box(required, spacing, gap_share)
     }
 
     /// Returns the part of `required`, which holds all receivers, onto which the casters in

@@ -5,10 +5,14 @@ use glam::DVec3;
 
 use crate::fit::axes::{LightAxes, LightBox};
 use crate::fit::cascade_bounds::Cascade;
+use crate::fit::cascade_layout::CascadeLayout;
 use crate::fit::caster_parts::{Casters, PartScratch};
 use crate::fit::directional_input::{CasterBounds, FitInput, FitLimits, Region};
 use crate::fit::extruded_rect::ExtrudedRect;
 use crate::fit::footprint::{FootprintScratch, SliceReport};
+use crate::fit::layout::HeldLayout;
+use crate::fit::layout_choice::{Layout, Prediction};
+use crate::fit::layout_samples::{Sample, Sampled};
 use crate::fit::map_rect::{HeldBounds, HeldDepth, LightSpaceBounds};
 use crate::fit::required::{camera_slice, checked_spacing, held_depths, required_box};
 use crate::fit::spacing::Spacing;
@@ -34,6 +38,8 @@ pub(crate) struct DirectionalFit {
     held_depths: Option<HeldDepth>,
     /// Describes the slices of the cascades of a camera's view.
     pub slices: [Option<SliceReport>; MAX_CASCADES],
+    /// Holds the layout that was found, where none is given.
+    layout: Option<HeldLayout>,
 }
 
 /// Holds lists that are reused from frame to frame.
@@ -44,6 +50,7 @@ pub(crate) struct FitScratch {
     lists: SeenLists,
     parts: PartScratch,
     footprint: FootprintScratch,
+    samples: Vec<Sample>,
 }
 
 impl DirectionalFit {
@@ -87,12 +94,16 @@ impl DirectionalFit {
         next.axes = Some(input.space.axes);
         let depths = held_depths(&visible, history.held_depths.as_ref());
         next.held_depths = depths.or(history.held_depths);
+        let limits = &next.find_layout(input, limits, &visible, scratch);
+        if next.layout() != history.layout() {
+            next.held = Default::default();
+        }
         for cascade in 0..limits.cascades {
             let depths = next.held_depths.as_ref();
             let slice = camera_slice(input, limits, &visible, depths, cascade);
             let seen = &scratch.lists.seen;
             let required = required_box(input, limits, slice.as_ref(), seen, cascade);
-            let held = history.held[cascade].as_ref();
+            let held = next.held[cascade].as_ref();
             let held_bounds = match required {
                 Some(required) if any_casts => {
                     let spacing = checked_spacing(input, limits, slice.as_ref(), &required)?;
@@ -101,6 +112,7 @@ impl DirectionalFit {
                         limits,
                         casters: &scratch.casters,
                         parts: &scratch.parts.parts,
+                        size_texels: limits.rects[cascade].size,
                         seen,
                         between: slice.as_ref().map(|slice| slice.between),
                     };
@@ -117,6 +129,42 @@ impl DirectionalFit {
             });
         }
         Ok(next)
+    }
+
+    /// Returns the settings for this frame, with the layout that is found where none is given.
+    fn find_layout(
+        &mut self,
+        input: &FitInput<'_>,
+        limits: &FitLimits,
+        visible: &SeenBounds,
+        scratch: &mut FitScratch,
+    ) -> FitLimits {
+        if limits.layout == CascadeLayout::Fixed {
+            return *limits;
+        }
+        let depths = self.held_depths.as_ref();
+        let sampled = Sampled {
+            input,
+            seen: &scratch.lists.seen,
+            casters: &scratch.casters,
+            parts: &scratch.parts.parts,
+        };
+        let samples = &mut scratch.samples;
+        let held = HeldLayout::next(self.layout.as_ref(), limits.map_size, move || {
+            Prediction::of(&sampled, limits, visible, depths, samples)
+        });
+        self.layout = Some(held);
+        held.layout.applied(limits)
+    }
+
+    /// Returns the layout that was found, where none is given.
+    pub fn layout(&self) -> Option<&Layout> {
+        self.layout.as_ref().map(|held| &held.layout)
+    }
+
+    /// Returns the error that was predicted for that layout.
+    pub fn predicted_error(&self) -> Option<f64> {
+        self.layout.map(|held| held.predicted_error)
     }
 
     /// Returns the light-space bounds of a cascade that something casts into, and adds its casters

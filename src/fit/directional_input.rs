@@ -5,9 +5,11 @@ use glam::DVec3;
 use crate::Aabb;
 use crate::fit::axes::{LightBox, LightSpace};
 use crate::fit::camera::CameraFrustum;
+use crate::fit::cascade_layout::CascadeLayout;
 use crate::fit::caster_shape::CasterShape;
-use crate::fit::split::SplitRule;
+use crate::fit::split::{MAX_CASCADES, SplitRule};
 use crate::fit::stability::Stability;
+use crate::fit::texel_rect::TexelRect;
 use crate::fit::visible::Receivers;
 
 /// Selects the receivers that count.
@@ -36,13 +38,19 @@ pub(crate) struct FitInput<'a> {
 /// Holds the settings that the light was made with.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FitLimits {
+    /// Counts the texels per side of a layer.
     pub map_size: u32,
+    /// Selects whether the next three fields apply, or a layout that is found, of at most as many
+    /// cascades.
+    pub layout: CascadeLayout,
     pub margin_texels: u32,
     /// Is the height in texels, above a surface, below which the bias may leave a caster without
     /// its shadow.
     pub gap_texels: f64,
     pub cascades: usize,
     pub split: SplitRule,
+    /// Holds the rectangle of each cascade in its layer.
+    pub rects: [TexelRect; MAX_CASCADES],
     pub stability: Stability,
 }
 

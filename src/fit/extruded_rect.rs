@@ -97,6 +97,7 @@ pub(crate) fn push_extruded_rect(
 mod tests {
     use super::*;
     use crate::fit::axes::{LightAxes, LightBox};
+    use glam::UVec2;
 
     /// Returns pseudo-random numbers in -1..1.
     fn noise(state: &mut u32) -> f64 {
@@ -125,7 +126,7 @@ mod tests {
             let rect = MapRect {
                 min: center - texel * 16.0,
                 texel,
-                map_size: 32,
+                size_texels: UVec2::splat(32),
             };
             let light: LightBox = space.bounds(&bounds);
             let (min, max) = (rect.min, rect.max());

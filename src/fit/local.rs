@@ -5,7 +5,7 @@
 //! the view's axis, and ndc depth is near / w (reversed, infinite far plane): its relative error is
 //! that of f32 at any distance.
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, UVec2};
 
 use crate::Aabb;
 use crate::fit::axes::{LightAxes, LightSpace};
@@ -77,7 +77,7 @@ impl LocalFit {
                 &MapRectRequest {
                     min,
                     max,
-                    map_size: input.map_size,
+                    size_texels: UVec2::splat(input.map_size),
                     margin_texels: input.margin_texels,
                     texel_floor: texel_floor(light, reach),
                     full_half_side: input.caster_tangent,

@@ -1,7 +1,7 @@
 //! Fits the rectangle of the map plane that one view covers: quantized extents, snapped to whole
 //! texels in absolute coordinates.
 
-use glam::DVec2;
+use glam::{DVec2, UVec2};
 
 use crate::fit::LightBox;
 use crate::fit::size_step::{HeldSize, size_step_up};
@@ -18,8 +18,8 @@ pub(crate) struct MapRectRequest {
     pub min: DVec2,
     /// Is the greatest x and y to cover.
     pub max: DVec2,
-    /// Counts the texels per side of the map.
-    pub map_size: u32,
+    /// Counts the texels along x and y.
+    pub size_texels: UVec2,
     /// Counts the texels kept free on every side, so that a filter's kernel stays inside.
     pub margin_texels: u32,
     /// Is the finest texel that render space can resolve at this position.
@@ -39,14 +39,14 @@ pub(crate) struct MapRect {
     pub min: DVec2,
     /// Is the size of a texel along x and y.
     pub texel: DVec2,
-    /// Counts the texels per side.
-    pub map_size: u32,
+    /// Counts the texels along x and y.
+    pub size_texels: UVec2,
 }
 
 impl MapRect {
     /// Returns the greatest x and y.
     pub fn max(&self) -> DVec2 {
-        self.min + self.texel * f64::from(self.map_size)
+        self.min + self.texel * self.size_texels.as_dvec2()
     }
 }
 
@@ -62,14 +62,14 @@ impl HeldRect {
     /// Returns the rectangle for `request`. The `held` one is kept, on each axis by itself, as long
     /// as it satisfies the request, so that small motions of a camera change nothing.
     pub fn fit(request: &MapRectRequest, held: Option<&Self>) -> Self {
-        let held = held.filter(|held| held.rect.map_size == request.map_size);
+        let held = held.filter(|held| held.rect.size_texels == request.size_texels);
         let (min_x, texel_x, held_x) = fit_axis(request, held, 0);
         let (min_y, texel_y, held_y) = fit_axis(request, held, 1);
         Self {
             rect: MapRect {
                 min: DVec2::new(min_x, min_y),
                 texel: DVec2::new(texel_x, texel_y),
-                map_size: request.map_size,
+                size_texels: request.size_texels,
             },
             texels: [held_x, held_y],
         }
@@ -83,7 +83,7 @@ fn fit_axis(
     axis: usize,
 ) -> (f64, f64, HeldSize) {
     let (low, high) = (request.min[axis], request.max[axis]);
-    let size = f64::from(request.map_size);
+    let size = f64::from(request.size_texels[axis]);
     let margin = f64::from(request.margin_texels);
     // One texel is lost to snapping. A map that is all margin is too small to snap: it is centred
     // on what it covers.
@@ -206,7 +206,7 @@ mod tests {
         MapRectRequest {
             min,
             max,
-            map_size: 512,
+            size_texels: UVec2::splat(512),
             margin_texels: 3,
             texel_floor: 1e-6,
             full_half_side: f64::INFINITY,
@@ -287,7 +287,7 @@ mod tests {
     fn maps_smaller_than_their_margins_and_points_stay_finite() {
         for map_size in [1, 2, 3, 7] {
             let mut request = request(DVec2::splat(2.5), DVec2::splat(2.5));
-            request.map_size = map_size;
+            request.size_texels = UVec2::splat(map_size);
             let rect = HeldRect::fit(&request, None).rect;
             assert!(rect.texel.min_element() > 0.0 && rect.min.is_finite());
             assert!(rect.min.max_element() < 2.5 && rect.max().min_element() > 2.5);

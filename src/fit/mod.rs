@@ -18,10 +18,15 @@
 //! caster_parts.rs  the parts of large casters behind which receivers lie
 //! required.rs     what a cascade must cover of the receivers
 //! cascade_bounds.rs  the light-space bounds of a cascade
+//! cascade_layout.rs  how texels may be divided among cascades
+//! layout.rs       the layout of a light, from frame to frame
+//! layout_choice.rs  the layout with the least predicted error; layout_samples.rs: what predicts it;
+//!                 layout_pack.rs: the rectangles of a layer
 //! directional.rs  the complete fit of a directional light; directional_input.rs: its input
 //! reached.rs      what a local light reaches
 //! nearest.rs      how near to a local light its near planes may be
 //! local.rs        the complete fit of a spot or point light's views; local_input.rs: its input
+//! texel_rect.rs   the rectangle of a layer that a view is rendered into
 //! view.rs         ShadowView: the value that maps are rendered and sampled with
 //! view_rounding.rs  the rounding errors of a view
 //! ```
@@ -29,6 +34,7 @@
 mod axes;
 mod camera;
 mod cascade_bounds;
+mod cascade_layout;
 mod caster_parts;
 mod caster_shape;
 mod directional;
@@ -36,6 +42,10 @@ mod directional_input;
 mod extruded_rect;
 mod footprint;
 mod image_corners;
+mod layout;
+mod layout_choice;
+mod layout_pack;
+mod layout_samples;
 mod local;
 mod local_input;
 mod map_rect;
@@ -47,6 +57,7 @@ mod size_step;
 mod spacing;
 mod split;
 mod stability;
+mod texel_rect;
 mod view;
 mod view_rounding;
 mod visible;
@@ -55,6 +66,7 @@ pub use axes::LightAxes;
 pub(crate) use axes::{LightBox, LightSpace};
 pub(crate) use camera::CameraFrustum;
 pub use camera::CameraView;
+pub use cascade_layout::CascadeLayout;
 pub use caster_shape::CasterShape;
 pub(crate) use directional::{DirectionalFit, FitScratch};
 pub(crate) use directional_input::{FitInput, FitLimits, Region};
@@ -67,6 +79,7 @@ pub(crate) use region::HalfSpaces;
 pub use split::CascadeSplit;
 pub(crate) use split::MAX_CASCADES;
 pub use stability::Stability;
+pub use texel_rect::TexelRect;
 pub use view::ShadowView;
 pub(crate) use view::{PerspectiveView, ViewPlacement};
 pub(crate) use visible::Receivers;

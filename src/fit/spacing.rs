@@ -7,7 +7,7 @@
 //! exact, so these steps never move a shadow against what casts it; they move the map rectangle
 //! against both.
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, UVec2};
 
 use crate::ShadowError;
 use crate::fit::LightBox;
@@ -79,10 +79,10 @@ impl Spacing {
     pub fn grown(
         self,
         (min, max): (DVec2, DVec2),
-        map_size: u32,
+        size_texels: UVec2,
         texel_floor: f64,
     ) -> (DVec2, DVec2) {
-        let texel = ((max - min) / f64::from(map_size)).max(DVec2::splat(texel_floor));
+        let texel = ((max - min) / size_texels.as_dvec2()).max(DVec2::splat(texel_floor));
         let error = self.error();
         let growth = texel.map(|texel| {
             if error > texel * FREE_SHARE {

@@ -49,6 +49,8 @@ pub(crate) enum SplitRule {
     Practical { lambda: f64 },
     /// Divides at the ends of all cascades but the last.
     Explicit { ends: [f64; MAX_CASCADES - 1] },
+    /// Divides at fractions of the logarithmic range: those at which each cascade ends.
+    Fractions { ends: [f64; MAX_CASCADES] },
 }
 
 impl CascadeSplit<'_> {
@@ -99,11 +101,11 @@ impl SplitRule {
         if index == count {
             return far;
         }
-        let lambda = match self {
+        let (share, lambda) = match self {
             Self::Explicit { ends } => return ends[index - 1].max(near).min(far),
-            Self::Practical { lambda } => lambda,
+            Self::Practical { lambda } => (index as f64 / count as f64, lambda),
+            Self::Fractions { ends } => (ends[index - 1], 1.0),
         };
-        let share = index as f64 / count as f64;
         let uniform = near + (far - near) * share;
         // Equal ratios need a positive start; depths of an orthographic camera may begin behind it.
         let logarithmic = if near > 0.0 {

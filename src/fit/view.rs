@@ -5,6 +5,7 @@ use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, Mat4, Vec2, Vec3};
 use crate::ShadowError;
 use crate::fit::axes::{LightAxes, LightSpace};
 use crate::fit::map_rect::{LightSpaceBounds, MapRect};
+use crate::fit::texel_rect::TexelRect;
 
 /// Describes one depth render: a cascade of a directional light, the map of a spot light, a face of
 /// a point light.
@@ -16,8 +17,13 @@ use crate::fit::map_rect::{LightSpaceBounds, MapRect};
 /// under another one its shadows are displaced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadowView {
+    /// Is its number among the views of all lights that share the texture.
+    index: u32,
     layer: u32,
+    /// Counts the texels per side of a layer.
     pub(super) map_size: u32,
+    /// Is the rectangle of the layer that it is rendered into.
+    texels: TexelRect,
     anchor_render: Vec3,
     /// Has reversed depth: near 1, far 0.
     clip_from_anchor: DMat4,
@@ -119,8 +125,13 @@ impl ShadowView {
         );
         let half = size.extend(depth.length()) * 0.5;
         Self {
+            index: layer,
             layer,
-            map_size: rect.map_size,
+            map_size: rect.size_texels.max_element(),
+            texels: TexelRect {
+                size: rect.size_texels,
+                ..TexelRect::default()
+            },
             anchor_render,
             clip_from_anchor,
             placement: ViewPlacement::Orthographic {
@@ -132,6 +143,17 @@ impl ShadowView {
             has_symmetric_clip_depth: false,
             reach: f64::INFINITY,
             range: f64::INFINITY,
+        }
+    }
+
+    /// Returns the same view, rendered into a rectangle of the first layer of a texture of
+    /// `map_size` texels a side, which it shares with other views.
+    pub(crate) fn in_shared_layer(self, texels: TexelRect, map_size: u32) -> Self {
+        Self {
+            layer: 0,
+            map_size,
+            texels,
+            ..self
         }
     }
 
@@ -162,8 +184,13 @@ impl ShadowView {
         );
         let light_from_anchor = DMat4::from_mat3(axes.light_from_world);
         Self {
+            index: layer,
             layer,
-            map_size: rect.map_size,
+            map_size: rect.size_texels.max_element(),
+            texels: TexelRect {
+                size: rect.size_texels,
+                ..TexelRect::default()
+            },
             anchor_render,
             clip_from_anchor: clip_from_light * light_from_anchor,
             placement: ViewPlacement::Perspective {
@@ -186,7 +213,12 @@ impl ShadowView {
         match &self.placement {
             ViewPlacement::Orthographic { axes, bounds } => {
                 let axes = *axes;
-                Self::orthographic(&LightSpace { axes, origin }, bounds, self.layer)
+                Self {
+                    layer: self.layer,
+                    map_size: self.map_size,
+                    texels: self.texels,
+                    ..Self::orthographic(&LightSpace { axes, origin }, bounds, self.index)
+                }
             }
             ViewPlacement::Perspective { position_world, .. } => {
                 let anchor_render = (*position_world - origin).as_vec3();
@@ -235,7 +267,18 @@ impl ShadowView {
         self.layer
     }
 
-    /// Returns the number of texels per side of the map.
+    /// Returns the number of the view among all views of its light or pool.
+    pub(crate) const fn index(&self) -> u32 {
+        self.index
+    }
+
+    /// Returns the rectangle of the layer that this view is rendered into: all of it, but where the
+    /// cascades of a light share a layer.
+    pub const fn texels(&self) -> TexelRect {
+        self.texels
+    }
+
+    /// Returns the number of texels per side of a layer of the light's depth texture.
     pub const fn map_size(&self) -> u32 {
         self.map_size
     }
@@ -278,15 +321,16 @@ impl ShadowView {
         }
     }
 
-    /// Returns the position of the first texel in a grid of such texels that is fixed in the world
-    /// (for a local light around it), modulo 65536: x in the low half, y, which grows downward, in
-    /// the high.
+    /// Returns the position of the layer's first texel in a grid of such texels that is fixed in
+    /// the world (for a local light around it), modulo 65536: x in the low half, y, which grows
+    /// downward, in the high.
     pub(crate) fn world_grid(&self) -> u32 {
         let rect = match &self.placement {
             ViewPlacement::Orthographic { bounds, .. } => &bounds.rect,
             ViewPlacement::Perspective { rect, .. } => rect,
         };
         let first = DVec2::new(rect.min.x, -rect.max().y) / rect.texel;
+        let first = first - self.texels.min.as_dvec2();
         let wrapped = first.round().rem_euclid(DVec2::splat(65_536.0));
         wrapped.x as u32 | (wrapped.y as u32) << 16
     }
@@ -295,15 +339,15 @@ impl ShadowView {
         &self.placement
     }
 
-    /// Returns the matrix to texel coordinates (origin top left, centres at halves), ndc depth and
-    /// w, from anchor-relative coordinates.
+    /// Returns the matrix to texel coordinates of the view's rectangle (origin top left, centres at
+    /// halves), ndc depth and w, from anchor-relative coordinates.
     pub(crate) fn texel_from_anchor(&self) -> DMat4 {
-        let half = f64::from(self.map_size) * 0.5;
+        let half = self.texels.size.as_dvec2() * 0.5;
         let texel_from_clip = DMat4::from_cols(
-            DVec4::new(half, 0.0, 0.0, 0.0),
-            DVec4::new(0.0, -half, 0.0, 0.0),
+            DVec4::new(half.x, 0.0, 0.0, 0.0),
+            DVec4::new(0.0, -half.y, 0.0, 0.0),
             DVec4::new(0.0, 0.0, 1.0, 0.0),
-            DVec4::new(half, half, 0.0, 1.0),
+            DVec4::new(half.x, half.y, 0.0, 1.0),
         );
         texel_from_clip * self.clip_from_anchor
     }

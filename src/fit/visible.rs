@@ -62,6 +62,11 @@ pub(crate) struct Seen {
 }
 
 impl Seen {
+    /// Returns the bounds of the whole receiver, if the camera at `index` sees something of it.
+    pub fn bounds_of(&self, index: usize) -> Option<&Aabb> {
+        (self.camera == index).then_some(&self.bounds)
+    }
+
     /// Returns whether the camera at `index` sees something of it between two depths.
     fn reaches(&self, index: usize, (depth_near, depth_far): (f64, f64)) -> bool {
         self.camera == index && self.depth_near <= depth_far && self.depth_far >= depth_near

@@ -7,7 +7,6 @@ use crate::{ShadowError, error::DeviceRefusal};
 /// Holds a layered depth texture, with one attachment per layer and one texture view of them all.
 #[derive(Debug)]
 pub(crate) struct DepthMap {
-    layers: u32,
     format: DepthFormat,
     texture: wgpu::Texture,
     array_view: wgpu::TextureView,
@@ -78,7 +77,6 @@ impl DepthMap {
                 })
                 .collect();
             Self {
-                layers,
                 format,
                 texture,
                 array_view,
@@ -137,10 +135,6 @@ impl DepthMap {
 
     pub fn format(&self) -> DepthFormat {
         self.format
-    }
-
-    pub fn layers(&self) -> u32 {
-        self.layers
     }
 
     /// Returns the device memory of all layers in bytes.

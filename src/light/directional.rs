@@ -5,8 +5,8 @@ use glam::Vec3;
 use crate::cast::{FrameCasters, ViewDraws};
 use crate::check;
 use crate::fit::{
-    DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, LightSpace, MAX_CASCADES,
-    Receivers, Region,
+    CascadeLayout, DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, LightSpace,
+    MAX_CASCADES, Receivers, Region, TexelRect,
 };
 use crate::light::distance_limit::{distance_limit, shadowed_texels};
 use crate::light::large_triangles::depth_reach;
@@ -26,14 +26,20 @@ pub struct DirectionalShadowDescriptor<'a> {
     /// Is the label from which all wgpu objects of the light derive theirs; "directional shadow" if
     /// `None`, the default.
     pub label: wgpu::Label<'a>,
-    /// Is the number of texels per side of each cascade's map: from 1 to the device's
-    /// `max_texture_dimension_2d`. The default is 2048. Cost and memory grow with its square; the
-    /// blur and the displacement of an edge shrink in proportion to it.
+    /// Is the number of texels per side of each cascade's map, or of the one that all cascades share
+    /// under [`CascadeLayout::Automatic`]: from 1 to the device's `max_texture_dimension_2d`. The
+    /// default is 2048. Cost and memory grow with its square; the blur and the displacement of an
+    /// edge shrink in proportion to it.
     pub map_size: u32,
     /// Is the number of cascades: 1..=8, and no more than the device's `max_texture_array_layers`.
     /// The default is 1, which suits a scene that is as deep as it is wide; a view to the horizon
-    /// needs 3 or 4. With too few, texels are coarse near the camera.
+    /// needs 3 or 4. With too few, texels are coarse near the camera. Under
+    /// [`CascadeLayout::Automatic`] it is the largest number of cascades; a lookup costs as much as
+    /// with that many.
     pub cascades: u32,
+    /// Selects how the texels are divided among the cascades. The default is
+    /// [`CascadeLayout::Fixed`].
+    pub layout: CascadeLayout,
     /// Selects where one cascade ends and the next begins. The default is logarithmic.
     pub split: CascadeSplit<'a>,
     /// Selects how a map is sampled. The default is that of [`Filter`]. Filters for point lights
@@ -66,6 +72,7 @@ impl Default for DirectionalShadowDescriptor<'_> {
             label: None,
             map_size: 2048,
             cascades: 1,
+            layout: CascadeLayout::Fixed,
             split: CascadeSplit::Logarithmic,
             filter: Filter::default(),
             bias: Bias::Auto,
@@ -84,6 +91,7 @@ impl DirectionalShadowDescriptor<'_> {
         label: None,
         map_size: 1024,
         cascades: 1,
+        layout: CascadeLayout::Fixed,
         split: CascadeSplit::Logarithmic,
         filter: Filter::Bilinear { sharpness: 1.0 },
         bias: Bias::Auto,
@@ -135,8 +143,9 @@ impl DirectionalLight {
     }
 }
 
-/// Renders the shadows of a directional light. Owns a depth texture with one layer per cascade, the
-/// uniforms of its views, and the state that decides what each frame must draw.
+/// Renders the shadows of a directional light. Owns a depth texture with one layer per cascade or
+/// one for all of them, the uniforms of its views, and the state that decides what each frame must
+/// draw.
 #[derive(Debug)]
 pub struct DirectionalShadow {
     maps: ShadowMaps,
@@ -162,9 +171,11 @@ impl DirectionalShadow {
             (1..=MAX_CASCADES as u32).contains(&descriptor.cascades),
             descriptor.cascades,
         )?;
-        let split = descriptor
-            .split
-            .checked("DirectionalShadowDescriptor::split", descriptor.cascades)?;
+        let split = match descriptor.layout {
+            CascadeLayout::Fixed => descriptor.split,
+            CascadeLayout::Automatic => CascadeSplit::Logarithmic,
+        };
+        let split = split.checked("DirectionalShadowDescriptor::split", descriptor.cascades)?;
         check::in_range(
             "DirectionalShadowDescriptor::blend",
             "in 0..=0.5",
@@ -198,6 +209,7 @@ impl DirectionalShadow {
                 sampling,
                 views_per_light: descriptor.cascades,
                 selection: Selection::Cascades,
+                shares_layer: descriptor.layout == CascadeLayout::Automatic,
                 indexed: false,
             },
         )?;
@@ -205,6 +217,8 @@ impl DirectionalShadow {
             maps,
             limits: FitLimits {
                 map_size: descriptor.map_size,
+                layout: descriptor.layout,
+                rects: [TexelRect::whole(descriptor.map_size); MAX_CASCADES],
                 margin_texels: sampling.margin_texels(),
                 gap_texels: sampling.gap_texels(),
                 cascades: descriptor.cascades as usize,
@@ -260,10 +274,15 @@ impl DirectionalShadow {
         });
         let maps_frame = MapsFrame {
             views,
-            layers: &layers[..self.limits.cascades],
+            layers: &layers[..self.cascades(&fit)],
+            predicted_error: fit.predicted_error().map(|error| error as f32),
             camera_render: None,
             casters: frame.casters,
         };
+        if fit.layout() != self.fit.layout() {
+            // The texels of all cascades may have belonged to others.
+            self.maps.invalidate();
+        }
         let report = self.maps.record(encoder, maps_frame)?;
         self.fit = fit;
         Ok(report)
@@ -296,18 +315,28 @@ impl DirectionalShadow {
         casters: &FrameCasters<'_>,
     ) -> Result<Vec<ViewDraws>, ShadowError> {
         let mut views = self.maps.spare_views();
-        for cascade in 0..self.limits.cascades {
+        for cascade in 0..self.cascades(fit) {
             let mut drawn = self.maps.spare_list();
             let Some(light_bounds) = fit.cull(cascade, input, &self.scratch, &mut drawn) else {
                 self.maps.return_list(drawn);
                 continue;
             };
             let view = ShadowView::orthographic(&input.space, light_bounds, cascade as u32);
+            let view = match fit.layout() {
+                None => view,
+                Some(layout) => view.in_shared_layer(layout.rects[cascade], self.limits.map_size),
+            };
             let view = view.checked()?;
             let reach = depth_reach(&view, casters, &drawn);
             views.push(ViewDraws::new(view.over_depths_from(reach), drawn));
         }
         Ok(views)
+    }
+
+    /// Returns the number of cascades of a frame.
+    fn cascades(&self, fit: &DirectionalFit) -> usize {
+        fit.layout()
+            .map_or(self.limits.cascades, |layout| layout.cascades)
     }
 
     /// Returns the light's depth texture, uniforms and report.

@@ -143,7 +143,7 @@ impl LocalLights {
                 (state.position_world, state.range)
             };
             layers.extend((0..light.view_count).map(|view| LayerState {
-                layer: first_layer + view,
+                index: first_layer + view,
                 anchor_render: (position_world - frame.origin).as_vec3(),
                 range_world: f64::from(range),
                 limit: range_limit(range, maps.sampling().fade),
@@ -171,6 +171,7 @@ impl LocalLights {
             views,
             camera_render: frame.camera_render(),
             casters: frame.casters,
+            predicted_error: None,
         };
         let report = maps.record(encoder, maps_frame)?;
         self.layers = layers;

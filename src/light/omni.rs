@@ -123,6 +123,7 @@ impl OmniShadow {
                 },
                 views_per_light: 6,
                 selection: Selection::CubeFace,
+                shares_layer: false,
                 indexed: false,
             },
         )?;

@@ -196,6 +196,7 @@ macro_rules! pool {
                         },
                         views_per_light: $views,
                         selection: $selection,
+                        shares_layer: false,
                         indexed: true,
                     },
                 )?;

@@ -114,6 +114,7 @@ impl SpotShadow {
                 },
                 views_per_light: 1,
                 selection: Selection::OneView,
+                shares_layer: false,
                 indexed: false,
             },
         )?;

@@ -167,6 +167,11 @@ fn visibility_function(name: &str, maps: &SampledMaps<'_>) -> String {
         }
         .fill();
     }
+    let layer = if maps.shares_layer {
+        "0u"
+    } else {
+        "place.layer"
+    };
     if sampling.blend > 0.0 && maps.view_count > 1 {
         return template::BlendedLookup {
             name,
@@ -177,6 +182,7 @@ fn visibility_function(name: &str, maps: &SampledMaps<'_>) -> String {
             sampler,
             weight,
             faded,
+            layer,
         }
         .fill();
     }
@@ -189,6 +195,7 @@ fn visibility_function(name: &str, maps: &SampledMaps<'_>) -> String {
         sampler,
         weight,
         faded,
+        layer,
     }
     .fill()
 }

@@ -5,17 +5,18 @@ use crate::cast::{VIEW_UNIFORM_BYTES, caster_group};
 use crate::gpu::{Need, allocated_layers};
 use crate::receive::view_uniform_bytes;
 
-/// Accepts devices whose limits suffice for a light with `layers` layers of one view each. `field` is the path of the
+/// Accepts devices whose limits suffice for a light with `views` views in `layers` layers. `field` is the path of the
 /// field that sets their number.
 pub(crate) fn check_layers(
     device: &wgpu::Device,
     field: &'static str,
     layers: u64,
+    views: u64,
 ) -> Result<(), ShadowError> {
     let limits = device.limits();
-    let uniform_bytes = view_uniform_bytes(layers);
+    let uniform_bytes = view_uniform_bytes(views);
     let alignment = u64::from(limits.min_uniform_buffer_offset_alignment);
-    let caster_bytes = VIEW_UNIFORM_BYTES.next_multiple_of(alignment) * layers;
+    let caster_bytes = VIEW_UNIFORM_BYTES.next_multiple_of(alignment) * views;
     let needs = [
         Need::new(
             "max_texture_array_layers",

@@ -91,7 +91,8 @@ impl LightUniforms {
     }
 
     /// Returns the uniform of one of the light's views, in which positions have shadows within
-    /// `shadowed_texels`: least x, least y, greatest x, greatest y in texel coordinates.
+    /// `shadowed_texels`: least x, least y, greatest x, greatest y in texel
+    /// coordinates of the view's rectangle.
     pub fn view(
         &self,
         view: &ShadowView,
@@ -99,18 +100,19 @@ impl LightUniforms {
         shadowed_texels: [f32; 4],
     ) -> ShadowViewUniform {
         let view = self.sampled(view);
-        let size = f64::from(view.map_size());
+        let size = view.texels().size.as_dvec2();
         // Only the middle of a map that is smaller than its borders remains.
-        let border = (sampling.border_texels() - ROUNDING_TEXELS).min(size * 0.5);
+        let border = DVec2::splat(sampling.border_texels() - ROUNDING_TEXELS).min(size * 0.5);
         let [left, top, right, bottom] = shadowed_texels.map(f64::from);
-        let least = DVec2::new(left, top).max(DVec2::splat(border));
-        let greatest = DVec2::new(right, bottom).min(DVec2::splat(size - border));
+        let least = DVec2::new(left, top).max(border);
+        let greatest = DVec2::new(right, bottom).min(size - border);
         let middle = (least + greatest) * 0.5;
         let (depth_error, depth_error_relative) = view.depth_error_ndc();
         let (manual_constant, manual_slope) = sampling.bias.manual();
         let light_size = f64::from(sampling.filter.light_size());
         let range = endless_range(view.range_world());
-        let blend_texels = f64::from(sampling.blend) * size;
+        let blend_texels = f64::from(sampling.blend) * size.min_element();
+        let layer_size = f64::from(view.map_size());
         let plane = Plane::of(&view, self.anchor_render, middle);
         let offset_world = view.position_error_world();
         ShadowViewUniform {
@@ -120,6 +122,8 @@ impl LightUniforms {
                 } else {
                     offset_world
                 } as f32,
+                middle: (middle + view.texels().min.as_dvec2()).as_vec2().to_array(),
+                inner: ((greatest - least) * 0.5).as_vec2().to_array(),
                 ..plane.mapping
             },
             right: plane.axes.right().as_vec3().to_array(),
@@ -130,10 +134,8 @@ impl LightUniforms {
             is_local: f32::from(u8::from(plane.is_local)),
             anchor: self.anchor_render.to_array(),
             grid: view.world_grid(),
-            inner: ((greatest - least) * 0.5).as_vec2().to_array(),
-            middle: middle.as_vec2().to_array(),
-            map_size: size as f32,
-            uv_per_texel: size.recip() as f32,
+            map_size: layer_size as f32,
+            uv_per_texel: layer_size.recip() as f32,
             depth_error: (depth_error + sampling.depth_format.step_ndc()) as f32,
             lateral_error: lateral_error_texels(&view) as f32,
             offset_texels: sampling.lookup_offset_texels(&view) as f32,
@@ -209,9 +211,9 @@ impl Plane {
 fn mapping(rect: &MapRect, texel_offset: DVec2, depth_scale: f64) -> ShadowMapping {
     ShadowMapping {
         texel_scale: rect.texel.recip().as_vec2().to_array(),
-        texel_offset: texel_offset.as_vec2().to_array(),
         texel_size: rect.texel.as_vec2().to_array(),
         depth_scale: depth_scale as f32,
-        rounding: 0.0,
+        texel_offset: texel_offset.as_vec2().to_array(),
+        ..ShadowMapping::EMPTY
     }
 }

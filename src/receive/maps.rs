@@ -2,14 +2,13 @@
 
 use glam::Vec3;
 
-use crate::cast::{FrameCasters, Plan, Recorder, ViewDraws};
+use crate::cast::{FrameCasters, Plan, Recorder, RecorderKind, ViewDraws};
 use crate::error::DeviceError;
 use crate::gpu::{DepthMap, UploadBuffer, capture_device_errors};
 use crate::receive::layer_limits::check_layers;
 use crate::receive::light_uniforms::{ALL_TEXELS, LightUniforms, NO_LIMIT, empty_view_uniform};
 use crate::receive::report::{ShadowReport, ViewReport, ViewStatus};
 use crate::receive::sampled_maps::{SampledMaps, Selection};
-use crate::receive::uniforms::ShadowMapping;
 use crate::receive::{Sampling, ShadowViewUniform, view_uniform_bytes};
 use crate::{ShadowError, ShadowView, report::SliceReport};
 
@@ -29,6 +28,9 @@ pub struct ShadowMaps {
     sampling: Sampling,
     selection: Selection,
     views_per_light: u32,
+    view_count: u32,
+    /// States that all views are rectangles of the first layer.
+    shares_layer: bool,
     indexed: bool,
     views: Vec<ViewDraws>,
     uniform_values: Vec<ShadowViewUniform>,
@@ -57,21 +59,24 @@ pub(crate) struct ShadowMapsDescriptor<'a> {
     pub layers_field: &'static str,
     pub sampling: Sampling,
     pub selection: Selection,
+    /// States that all views are rectangles of one layer, which must be those of a directional light.
+    pub shares_layer: bool,
     /// States that the maps are those of a pool, whose WGSL function takes the index of a light.
     pub indexed: bool,
 }
 
-/// Describes a layer of a light of this frame, with the values that its uniform has where nothing casts into it.
+/// Describes a view of a light of this frame, with the values that its uniform has where nothing casts into it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LayerState {
-    pub layer: u32,
+    /// Is the index of the view, which is also its layer unless views share one.
+    pub index: u32,
     /// Is the position of a local light; zero for a directional one.
     pub anchor_render: Vec3,
     /// Is the world distance beyond which the light does not shine; infinite for a directional one.
     pub range_world: f64,
     /// Is where the light's shadows end, as the uniform has it.
     pub limit: [f32; 4],
-    /// Bounds the texels in which positions have shadows, in addition to the bounds of the map:
+    /// Bounds the texels of the view in which positions have shadows, in addition to its bounds:
     /// least x and y, greatest x and y.
     pub shadowed_texels: [f32; 4],
     /// States that the layer needed drawing and was deferred.
@@ -82,9 +87,9 @@ pub(crate) struct LayerState {
 
 impl LayerState {
     /// Returns the state of a layer of a directional light without a limit to its shadows.
-    pub fn directional(layer: u32, slice: Option<SliceReport>) -> Self {
+    pub fn directional(index: u32, slice: Option<SliceReport>) -> Self {
         Self {
-            layer,
+            index,
             anchor_render: Vec3::ZERO,
             range_world: f64::INFINITY,
             limit: NO_LIMIT,
@@ -97,13 +102,15 @@ impl LayerState {
 
 /// Holds the input of a frame for the maps.
 pub(crate) struct MapsFrame<'a> {
-    /// Holds the layers of this frame's lights; all other layers are lit and not reported.
+    /// Describes the views of this frame's lights; all other views are lit and not reported.
     pub layers: &'a [LayerState],
     /// Holds the views into which something casts, in the order of `layers`; the other layers are lit.
     pub views: Vec<ViewDraws>,
     /// Is the position of the first camera, if there is one.
     pub camera_render: Option<Vec3>,
     pub casters: FrameCasters<'a>,
+    /// Is the error that was predicted for the layout of the views.
+    pub predicted_error: Option<f32>,
 }
 
 impl ShadowMaps {
@@ -113,9 +120,10 @@ impl ShadowMaps {
         descriptor: &ShadowMapsDescriptor<'_>,
     ) -> Result<Self, ShadowError> {
         // Every product fits in 64 bits. A number of layers that a device can hold also fits in 32 bits.
-        let layers = u64::from(descriptor.lights) * u64::from(descriptor.views_per_light);
-        check_layers(device, descriptor.layers_field, layers)?;
-        let (label, layers) = (descriptor.label, layers as u32);
+        let views = u64::from(descriptor.lights) * u64::from(descriptor.views_per_light);
+        let layers = if descriptor.shares_layer { 1 } else { views };
+        check_layers(device, descriptor.layers_field, layers, views)?;
+        let (label, views, layers) = (descriptor.label, views as u32, layers as u32);
         let map = DepthMap::new(
             device,
             label,
@@ -134,20 +142,28 @@ impl ShadowMaps {
             recorder: Recorder::new(
                 device,
                 label,
-                layers,
-                descriptor.selection == Selection::CubeFace && !descriptor.indexed,
+                views,
+                if descriptor.shares_layer {
+                    RecorderKind::SharedLayer(descriptor.sampling.depth_format)
+                } else if descriptor.selection == Selection::CubeFace && !descriptor.indexed {
+                    RecorderKind::Cube
+                } else {
+                    RecorderKind::Layers
+                },
             )?,
             uniforms: UploadBuffer::new(
                 device,
                 &format!("{label} views"),
-                view_uniform_bytes(layers.into()),
+                view_uniform_bytes(views.into()),
             )?,
             sampling: descriptor.sampling,
             selection: descriptor.selection,
             views_per_light: descriptor.views_per_light,
+            view_count: views,
+            shares_layer: descriptor.shares_layer,
             indexed: descriptor.indexed,
             views: Vec::new(),
-            uniform_values: vec![empty_view_uniform(0, Vec3::ZERO, f64::INFINITY); layers as usize],
+            uniform_values: vec![empty_view_uniform(0, Vec3::ZERO, f64::INFINITY); views as usize],
             report,
             memory: Memory::default(),
         })
@@ -159,8 +175,9 @@ impl ShadowMaps {
 
     /// Returns the depth texture. Its depths are reversed: near 1, far 0. Its format is `Depth32Float`, or that of a
     /// directional light's [`DepthFormat`](crate::DepthFormat). It has one layer per cascade, spot light or cube face
-    /// (+x, -x, +y, -y, +z, -z); a pool has the layers of its slots in order. It can be copied from on all backends but
-    /// OpenGL.
+    /// (+x, -x, +y, -y, +z, -z), and a single layer under
+    /// [`CascadeLayout::Automatic`](crate::CascadeLayout::Automatic); a pool has the layers of its
+    /// slots in order. It can be copied from on all backends but OpenGL.
     pub fn texture(&self) -> &wgpu::Texture {
         self.map.texture()
     }
@@ -176,12 +193,13 @@ impl ShadowMaps {
         self.map.size()
     }
 
-    /// Returns the uniform buffer, which holds one [`ShadowViewUniform`] per layer.
+    /// Returns the uniform buffer, which holds one [`ShadowViewUniform`] per view, that is per layer unless cascades
+    /// share one.
     pub fn uniform_buffer(&self) -> &wgpu::Buffer {
         self.uniforms.buffer()
     }
 
-    /// Returns the uniforms of the last frame, one per layer: what the uniform buffer holds.
+    /// Returns the uniforms of the last frame, one per view: what the uniform buffer holds.
     pub fn view_uniforms(&self) -> &[ShadowViewUniform] {
         &self.uniform_values
     }
@@ -202,11 +220,12 @@ impl ShadowMaps {
         SampledMaps {
             map: self.map.array_view(),
             views: self.uniforms.buffer(),
-            view_count: self.map.layers(),
+            view_count: self.view_count,
             uniforms: &self.uniform_values,
             sampling: self.sampling,
             selection: self.selection,
             views_per_light: self.views_per_light,
+            shares_layer: self.shares_layer,
             indexed: self.indexed,
         }
     }
@@ -251,6 +270,7 @@ impl ShadowMaps {
             mut views,
             camera_render,
             casters,
+            predicted_error,
         } = frame;
         let device = &self.device.clone();
         let prepared = self
@@ -280,11 +300,12 @@ impl ShadowMaps {
         let lists = old_views.drain(..).map(|draws| draws.casters);
         self.memory.casters.extend(lists);
         self.memory.views = old_views;
+        self.report.predicted_error = predicted_error;
         self.fill_report(layers, &casters);
         Ok(&self.report)
     }
 
-    /// Returns the uniforms of the frame, one per layer of the texture.
+    /// Returns the uniforms of the frame, one per view.
     fn uniforms_of(
         &mut self,
         layers: &[LayerState],
@@ -293,38 +314,39 @@ impl ShadowMaps {
     ) -> Vec<ShadowViewUniform> {
         let mut uniforms = std::mem::take(&mut self.memory.uniforms);
         uniforms.clear();
-        let layer_count = self.map.layers();
-        let empty = |layer| empty_view_uniform(layer, Vec3::ZERO, f64::INFINITY);
-        uniforms.extend((0..layer_count).map(empty));
+        let layer_of = layer_of(self.shares_layer);
+        let empty = |index| empty_view_uniform(layer_of(index), Vec3::ZERO, f64::INFINITY);
+        uniforms.extend((0..self.view_count).map(empty));
         for base in layers {
             let (anchor, range) = (base.anchor_render, base.range_world);
-            uniforms[base.layer as usize] = empty_view_uniform(base.layer, anchor, range);
+            let layer = layer_of(base.index);
+            uniforms[base.index as usize] = empty_view_uniform(layer, anchor, range);
         }
         for light in lights(views, self.views_per_light) {
             let shared = LightUniforms::of(light);
             let shadowed = |view: &ShadowView| {
-                let base = layers.iter().find(|base| base.layer == view.layer());
+                let base = layers.iter().find(|base| base.index == view.index());
                 base.map_or(ALL_TEXELS, |base| base.shadowed_texels)
             };
             let uniform_of = |view: &ShadowView| shared.view(view, &self.sampling, shadowed(view));
             // Shaders read what the views of a light have in common from any of them, those into
             // which nothing casts included.
-            let first_layer = light[0].view.layer();
-            let first_layer = first_layer - first_layer % self.views_per_light;
-            for layer in first_layer..first_layer + self.views_per_light {
-                uniforms[layer as usize] = ShadowViewUniform {
-                    mapping: ShadowMapping::EMPTY,
-                    layer,
-                    ..uniform_of(&light[0].view)
+            let first = light[0].view.index();
+            let first = first - first % self.views_per_light;
+            let common = uniform_of(&light[0].view);
+            for index in first..first + self.views_per_light {
+                uniforms[index as usize] = ShadowViewUniform {
+                    mapping: common.mapping.of_empty_view(),
+                    layer: layer_of(index),
+                    ..common
                 };
             }
             for draws in light {
-                let layer = draws.view.layer() as usize;
-                uniforms[layer] = uniform_of(&draws.view);
+                uniforms[draws.view.index() as usize] = uniform_of(&draws.view);
             }
         }
         for base in layers {
-            uniforms[base.layer as usize].limit = base.limit;
+            uniforms[base.index as usize].limit = base.limit;
         }
         for uniform in &mut uniforms {
             uniform.sample_radius = self.sampling.filter.radius_world();
@@ -335,6 +357,7 @@ impl ShadowMaps {
 
     fn fill_report(&mut self, layers: &[LayerState], casters: &FrameCasters<'_>) {
         let caster_count = casters.len() as u32;
+        let layer_of = layer_of(self.shares_layer);
         let lights = lights(&self.views, self.views_per_light);
         let sampled = lights.flat_map(|light| {
             let shared = LightUniforms::of(light);
@@ -344,12 +367,12 @@ impl ShadowMaps {
         });
         let mut views = sampled.peekable();
         let reports = layers.iter().map(|base| {
-            match views.next_if(|(draws, _)| draws.view.layer() == base.layer) {
+            match views.next_if(|(draws, _)| draws.view.index() == base.index) {
                 None if base.deferred => ViewReport {
                     status: ViewStatus::Deferred,
-                    ..ViewReport::empty(base.layer, caster_count)
+                    ..ViewReport::empty(layer_of(base.index), caster_count)
                 },
-                None => ViewReport::empty(base.layer, caster_count),
+                None => ViewReport::empty(layer_of(base.index), caster_count),
                 Some((draws, sampled)) => ViewReport {
                     slice: base.slice,
                     max_peter_panning_world: self.sampling.max_peter_panning_world(&sampled),
@@ -375,9 +398,14 @@ impl ShadowMaps {
     }
 }
 
+/// Returns a function from the index of a view to its layer.
+fn layer_of(shares_layer: bool) -> impl Fn(u32) -> u32 {
+    move |index| if shares_layer { 0 } else { index }
+}
+
 /// Returns the views of each light in turn.
 fn lights(views: &[ViewDraws], views_per_light: u32) -> impl Iterator<Item = &[ViewDraws]> {
-    let light = move |draws: &ViewDraws| draws.view.layer() / views_per_light;
+    let light = move |draws: &ViewDraws| draws.view.index() / views_per_light;
     views.chunk_by(move |a, b| light(a) == light(b))
 }
 
@@ -390,6 +418,7 @@ fn view_report(draws: &ViewDraws, casters: &FrameCasters<'_>) -> ViewReport {
     ViewReport {
         triangles: triangles.saturating_sub(draws.copied_triangles),
         layer: draws.view.layer(),
+        texels: draws.view.texels(),
         status: match draws {
             ViewDraws { deferred: true, .. } => ViewStatus::Deferred,
             ViewDraws {

@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use crate::report::{BrokenBounds, SliceReport};
+use crate::report::{BrokenBounds, SliceReport, TexelRect};
 
 /// Tells how a view was brought up to date in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +25,8 @@ pub enum ViewStatus {
 pub struct ViewReport {
     /// Is the layer of the depth texture that the view is rendered into.
     pub layer: u32,
+    /// Is the rectangle of the layer that the view is rendered into; empty for a view without a map.
+    pub texels: TexelRect,
     /// Tells how the view was brought up to date.
     pub status: ViewStatus,
     /// Counts the casters in the view: those that its pass drew, if it had one, and those that were copied. Where all
@@ -57,6 +59,7 @@ impl ViewReport {
     pub(crate) fn empty(layer: u32, culled: u32) -> Self {
         Self {
             layer,
+            texels: TexelRect::default(),
             status: ViewStatus::Empty,
             casters: 0,
             copied: 0,
@@ -83,6 +86,11 @@ pub struct ShadowReport {
     /// first, and a single one for all faces of a point light where that is cheaper ([`OmniShadow`](crate::OmniShadow)
     /// states when).
     pub passes: u32,
+    /// Is the error that is predicted for the layout of a directional light under
+    /// [`CascadeLayout::Automatic`](crate::CascadeLayout::Automatic): the root of the mean squared error of visibility
+    /// over the pixels of the images, for images of 720 rows and the default filter. It is estimated from bounds, so
+    /// that it serves to compare layouts and scenes rather than as a promise. It is `None` for all other lights.
+    pub predicted_error: Option<f32>,
     /// Is the device memory, in bytes, of the depth texture and of the static-caster caches.
     pub bytes_held: u64,
 }
@@ -132,6 +140,7 @@ mod tests {
             views: vec![view(0, 1), view(u32::MAX, 0), view(7, 2)],
             broken_bounds: Vec::new(),
             passes: 3,
+            predicted_error: None,
             bytes_held: 0,
         };
         assert_eq!(report.draws(), u32::MAX);

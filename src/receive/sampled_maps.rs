@@ -7,7 +7,7 @@ use crate::receive::{Sampling, ShadowViewUniform};
 pub(crate) struct SampledMaps<'a> {
     /// Is a view of all layers as an array.
     pub map: &'a wgpu::TextureView,
-    /// Is the uniform buffer, with one view per layer.
+    /// Is the uniform buffer, with one entry per view.
     pub views: &'a wgpu::Buffer,
     pub view_count: u32,
     /// Holds the contents of `views` as of the last frame.
@@ -15,6 +15,8 @@ pub(crate) struct SampledMaps<'a> {
     pub sampling: Sampling,
     pub selection: Selection,
     pub views_per_light: u32,
+    /// States that all views are rectangles of the first layer.
+    pub shares_layer: bool,
     /// States that the maps are those of a pool, whose lights are selected by index.
     pub indexed: bool,
 }

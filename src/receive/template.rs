@@ -54,9 +54,9 @@ templates! {
     /// Defines `shadow_view_NAME`.
     View("view.wgsl") { name, index, view_count }
     /// Defines `shadow_NAME` as one lookup in one view.
-    SingleLookup("single_lookup.wgsl") { name, index, any_view, bias, filter, sampler, weight, faded }
+    SingleLookup("single_lookup.wgsl") { name, index, any_view, bias, filter, sampler, weight, faded, layer }
     /// Defines `shadow_NAME` as the weighted mean of a lookup in each of the cascades that blend at a position.
-    BlendedLookup("blended_lookup.wgsl") { name, index, view_count, bias, filter, sampler, weight, faded }
+    BlendedLookup("blended_lookup.wgsl") { name, index, view_count, bias, filter, sampler, weight, faded, layer }
     /// Defines `shadow_NAME` as the mean of lookups in many directions from a point light.
     MeanLookup("mean_lookup.wgsl") {
         name, index, any_view, pattern, sample_count, sample_count_f32, surface, normal, bias, filter, sampler,

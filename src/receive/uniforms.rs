@@ -40,12 +40,7 @@ pub struct ShadowViewUniform {
     /// Is the position of the map's first texel in a texel grid that is fixed in the world, modulo
     /// 65536: x in the low 16 bits, y in the high 16 bits.
     pub(crate) grid: u32,
-    /// Is the distance from the middle, in texels along x and y, within which a lookup stays inside
-    /// the map, with kernel and bias included, and positions have shadows.
-    pub(crate) inner: [f32; 2],
-    /// Is the middle of the part of the map in which positions have shadows, in texel coordinates.
-    pub(crate) middle: [f32; 2],
-    /// Is the number of texels per side.
+    /// Is the number of texels per side of the layer.
     pub(crate) map_size: f32,
     /// Is the reciprocal of the number of texels per side.
     pub(crate) uv_per_texel: f32,
@@ -97,8 +92,6 @@ pub struct ShadowViewUniform {
 pub(crate) struct ShadowMapping {
     /// Is the number of texels per unit of the plane.
     pub texel_scale: [f32; 2],
-    /// Is the position of the anchor, in texels from the middle.
-    pub texel_offset: [f32; 2],
     /// Is the size of a texel in units of the plane.
     pub texel_size: [f32; 2],
     /// Is the ndc depth of a world unit for a directional light, and the world distance of the near
@@ -108,17 +101,36 @@ pub(crate) struct ShadowMapping {
     /// render coordinates for a directional light, and the rounding error of a comparison in
     /// relation to the depth for a local one.
     pub rounding: f32,
+    /// Is the middle of the part of the map in which positions have shadows, in texel coordinates.
+    pub middle: [f32; 2],
+    /// Is the position of the anchor, in texels from the middle.
+    pub texel_offset: [f32; 2],
+    /// Is the distance from the middle, in texels along x and y, within which a lookup stays inside
+    /// the view's part of the map, with kernel and bias included, and positions have shadows.
+    pub inner: [f32; 2],
 }
 
 impl ShadowMapping {
     /// Is the mapping of a view into which nothing casts: it covers no position.
     pub const EMPTY: Self = Self {
         texel_scale: [0.0; 2],
-        texel_offset: [1e30; 2],
         texel_size: [0.0; 2],
         depth_scale: 0.0,
         rounding: 0.0,
+        middle: [0.0; 2],
+        texel_offset: [1e30; 2],
+        inner: [0.0; 2],
     };
+
+    /// Returns the mapping of a view of the same light into which nothing casts. Shaders read what
+    /// the views of a local light have in common from any of them.
+    pub fn of_empty_view(self) -> Self {
+        Self {
+            middle: self.middle,
+            inner: self.inner,
+            ..Self::EMPTY
+        }
+    }
 }
 
 impl ShadowViewUniform {
@@ -221,12 +233,12 @@ mod tests {
     fn rust_and_wgsl_have_one_layout() {
         let views = members!(
             ShadowViewUniform: mapping right depth_offset down layer toward is_local anchor grid
-            inner middle map_size uv_per_texel depth_error lateral_error offset_texels offset_world
+            map_size uv_per_texel depth_error lateral_error offset_texels offset_world
             manual_constant manual_slope ramp range range_squared cone_tangent_squared sample_radius
             light_spread blend_scale camera limit
         );
         let mappings = members!(
-            ShadowMapping: texel_scale texel_offset texel_size depth_scale rounding
+            ShadowMapping: texel_scale texel_size depth_scale rounding middle texel_offset inner
         );
         for (name, in_rust, size) in [
             ("ShadowViewUniform", views, size_of::<ShadowViewUniform>()),

@@ -153,7 +153,7 @@ pub(super) fn place(point: &Point) -> (DVec3, DVec3) {
 pub(super) fn at_border(view: &ShadowViewUniform, position: DVec3, band: &Band) -> bool {
     let (texel, depth) = texel_and_depth(view, position);
     let pair = |name| Vec2::from_array(member(view, name)).as_dvec2();
-    let from_border = (texel - pair("middle")).abs() - pair("inner");
+    let from_border = (texel - pair("mapping.middle")).abs() - pair("mapping.inner");
     from_border.abs().cmple(band.texel).any() || depth.abs() <= band.depth
 }
 

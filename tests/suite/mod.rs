@@ -1,6 +1,7 @@
 //! Contains one module for each property that could be violated.
 
 mod any_input;
+mod automatic_layout;
 mod beside_engine_buffers;
 mod binding_errors;
 mod blending;

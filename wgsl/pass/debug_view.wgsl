@@ -18,7 +18,7 @@ struct ShadowDebugView {
 // light's reach. `tangents` is the ray's position in the plane of the map of a local light.
 fn shadow_debug_grey(view: ShadowViewUniform, texel: vec2<f32>, tangents: vec2<f32>) -> f32 {
     let last = view.map_size - 1.0;
-    let inside = clamp(floor(texel + view.middle), vec2<f32>(0.0), vec2<f32>(last));
+    let inside = clamp(floor(texel + view.mapping.middle), vec2<f32>(0.0), vec2<f32>(last));
     let center = (inside + 0.5) * view.uv_per_texel;
     // This is a sample, since GLSL ES 3.00 has no gather, and since loads fail as `texels_by_samples` describes.
     let depth = textureSampleLevel(shadow_debug_map, shadow_debug_sampler, center, view.layer, 0.0).x;
@@ -34,7 +34,7 @@ fn shadow_debug_grey(view: ShadowViewUniform, texel: vec2<f32>, tangents: vec2<f
 @fragment
 fn shadow_debug_layer(vertex: ShadowFullscreenVertex) -> @location(0) vec4<f32> {
     let view = shadow_debug_views[0];
-    let texel = vertex.uv * view.map_size - view.middle;
+    let texel = vertex.uv * view.map_size - view.mapping.middle;
     // A view into which nothing casts has texels without a size.
     if view.mapping.texel_size.x <= 0.0 {
         return vec4<f32>(1.0);
@@ -69,7 +69,7 @@ fn shadow_debug_cross(vertex: ShadowFullscreenVertex) -> @location(0) vec4<f32> 
     let light = shadow_along_face(face, ray);
     let tangents = light.xy / -light.z;
     let texel = tangents * view.mapping.texel_scale + view.mapping.texel_offset;
-    if !all(abs(texel) < view.inner) {
+    if !all(abs(texel) < view.mapping.inner) {
         return vec4<f32>(1.0);
     }
     return vec4<f32>(vec3<f32>(shadow_debug_grey(view, texel, tangents)), 1.0);

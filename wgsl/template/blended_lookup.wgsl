@@ -18,9 +18,10 @@ fn shadow_NAME(INDEX: u32, position: vec3<f32>, normal: vec3<f32>) -> f32 {
     for (var view = first.layer; view < VIEW_COUNT && share < 1.0; view++) {
         let place = shadow_directional_place(shadow_views_NAME[view], view, first.light);
         if place.inside {
-            let part = (1.0 - share) * shadow_blend_weight(shadow_views_NAME[0], place);
+            let part = (1.0 - share) * shadow_blend_weight(shadow_views_NAME[view], place);
             let mapping = shadow_views_NAME[view].mapping;
-            let receiver = shadow_BIAS(shadow_views_NAME[0], mapping, place, along);
+            var receiver = shadow_BIAS(shadow_views_NAME[0], mapping, place, along);
+            receiver.layer = LAYER;
             lit += part * shadow_FILTER(shadow_map_NAME, SAMPLER, receiver);
             share += part;
         }

@@ -9,7 +9,8 @@ fn shadow_NAME(INDEX: u32, position: vec3<f32>, normal: vec3<f32>) -> f32 {
     let weight = shadow_WEIGHT(shadow_views_NAME[ANY_VIEW], position);
     let along = shadow_axes_of_NAME(INDEX, position, normal);
     let mapping = shadow_views_NAME[place.layer].mapping;
-    let receiver = shadow_BIAS(shadow_views_NAME[ANY_VIEW], mapping, place, along);
+    var receiver = shadow_BIAS(shadow_views_NAME[ANY_VIEW], mapping, place, along);
+    receiver.layer = LAYER;
     let visibility = shadow_FILTER(shadow_map_NAME, SAMPLER, receiver);
     return shadow_FADED(weight, visibility);
 }

@@ -36,7 +36,7 @@ pub fn receiver(
         (BiasScheme::Manual, _) => manual(&map, light, normal),
     };
     Receiver {
-        texel: moved.texel_from_middle + Vec2::from_array(view.middle).as_dvec2(),
+        texel: moved.texel_from_middle + Vec2::from_array(view.mapping.middle).as_dvec2(),
         depth: moved.depth,
         gradient: moved.gradient,
         penumbra: f64::from(view.light_spread) / map.depth_scale * map.texel_scale,
@@ -52,7 +52,7 @@ pub fn holds(view: &ShadowViewUniform, position: DVec3) -> bool {
     let map = Map::of(view);
     let light = map.light_from_render(position - map.anchor);
     let texel = map.texel_from_middle(light);
-    let inner = Vec2::from_array(view.inner).as_dvec2();
+    let inner = Vec2::from_array(view.mapping.inner).as_dvec2();
     let within = texel.abs().cmplt(inner).all();
     if map.is_local {
         let tangents = light.truncate() / light.z;
@@ -70,7 +70,7 @@ pub fn holds(view: &ShadowViewUniform, position: DVec3) -> bool {
 pub fn weight(view: &ShadowViewUniform, position: DVec3) -> f64 {
     let map = Map::of(view);
     let texel = map.texel_from_middle(map.light_from_render(position - map.anchor));
-    let from_border = Vec2::from_array(view.inner).as_dvec2() - texel.abs();
+    let from_border = Vec2::from_array(view.mapping.inner).as_dvec2() - texel.abs();
     let share = from_border.min_element() * f64::from(view.blend_scale);
     // A share of NaN gives the least weight.
     if share >= LEAST_WEIGHT {

@@ -93,7 +93,7 @@ fn any_lens_is_fitted_or_refused() {
                 Ok(()) => {
                     taken += 1;
                     for view in sun.shadow.maps().view_uniforms() {
-                        let mapping: [f32; 8] = member(view, "mapping");
+                        let mapping: [f32; 12] = member(view, "mapping");
                         let vectors = ["right", "down", "toward", "anchor"];
                         let vectors = vectors.map(|name| member::<[f32; 3]>(view, name));
                         let mut all = mapping.iter().chain(vectors.iter().flatten());

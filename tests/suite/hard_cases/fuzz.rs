@@ -10,7 +10,7 @@ use glam::{DVec3, Mat4, Vec3};
 use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use wgpu_shadows::{
-    Aabb, CascadeSplit, DepthFormat, DirectionalLight, DirectionalShadow,
+    Aabb, CascadeLayout, CascadeSplit, DepthFormat, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowCaster,
     SpotLight, SpotShadow, SpotShadowDescriptor, Stability, pool::OmniShadowPool,
     pool::PoolDescriptor, pool::PoolLight, pool::ShadowSlot, pool::SpotShadowPool,
@@ -53,6 +53,11 @@ fn any_descriptor_is_taken_or_refused() {
                 label: None,
                 map_size,
                 cascades: count,
+                layout: if cascade_split == 3 {
+                    CascadeLayout::Automatic
+                } else {
+                    CascadeLayout::Fixed
+                },
                 split,
                 filter,
                 bias,

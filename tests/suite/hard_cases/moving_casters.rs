@@ -4,8 +4,8 @@ use glam::{DVec3, Mat4, Quat, Vec3};
 use shadow_support::camera::Camera;
 use shadow_support::mesh::Mesh;
 use wgpu_shadows::{
-    DirectionalShadowDescriptor, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor,
-    ShadowCaster,
+    CascadeLayout, DirectionalShadowDescriptor, MeshCaster, OmniLight, OmniShadow,
+    OmniShadowDescriptor, ShadowCaster,
 };
 
 use super::stage::{Sun, level, shining};
@@ -169,21 +169,30 @@ fn still_shadows_stay_still_beside_moving_casters() {
     let points = level(&samples(), DVec3::ZERO);
     for motion in &motions() {
         // The walker and the crowd cast their shadows away from the box. The ball and the fan are beside it.
-        let sun = std::cell::RefCell::new(Sun::new(&DirectionalShadowDescriptor {
+        let changes = |descriptor: &DirectionalShadowDescriptor<'_>| {
+            let sun = std::cell::RefCell::new(Sun::new(descriptor));
+            play(
+                motion,
+                |list| {
+                    let coverage = Coverage::Camera(camera.view());
+                    let mut sun = sun.borrow_mut();
+                    sun.record(DVec3::ZERO, shining(light), coverage, list, &[]);
+                    sun.texel()
+                },
+                || sun.borrow().ask(&points),
+            )
+        };
+        let fixed = DirectionalShadowDescriptor {
             map_size: 512,
             ..Default::default()
-        }));
-        let changes = play(
-            motion,
-            |list| {
-                let coverage = Coverage::Camera(camera.view());
-                let mut sun = sun.borrow_mut();
-                sun.record(DVec3::ZERO, shining(light), coverage, list, &[]);
-                sun.texel()
-            },
-            || sun.borrow().ask(&points),
-        );
-        words.push(changes.few(motion.name));
+        };
+        words.push(changes(&fixed).few(motion.name));
+        let automatic = DirectionalShadowDescriptor {
+            cascades: 4,
+            layout: CascadeLayout::Automatic,
+            ..fixed
+        };
+        changes(&automatic).few(motion.name);
     }
     table::record(
         "casters that move beside a still box under a sun, 300 frames each",

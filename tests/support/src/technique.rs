@@ -1,6 +1,6 @@
 //! Defines what is compared: anything that fills maps and provides `shadow_light(position, normal)`.
 
-use glam::{DMat4, DVec3, Vec3};
+use glam::{DMat4, DVec2, DVec3, Vec3};
 use wgpu_shadows::{ShadowError, ShadowView};
 
 use crate::gpu::Gpu;
@@ -74,7 +74,8 @@ pub struct Footprint {
 struct FootprintView {
     clip_from_anchor: DMat4,
     anchor_render: DVec3,
-    map_size: f64,
+    /// Counts the texels along x and y.
+    size_texels: DVec2,
 }
 
 impl Footprint {
@@ -83,7 +84,7 @@ impl Footprint {
             .map(|view| FootprintView {
                 clip_from_anchor: view.clip_from_anchor().as_dmat4(),
                 anchor_render: view.anchor_render().as_dvec3(),
-                map_size: f64::from(view.map_size()),
+                size_texels: view.texels().size.as_dvec2(),
             })
             .collect();
         Self { views }
@@ -95,7 +96,7 @@ impl Footprint {
             .map(|clip_from_anchor| FootprintView {
                 clip_from_anchor,
                 anchor_render: DVec3::ZERO,
-                map_size: f64::from(map_size),
+                size_texels: DVec2::splat(f64::from(map_size)),
             })
             .collect();
         Self { views }
@@ -116,8 +117,8 @@ impl FootprintView {
         let rows = [0, 1, 3].map(|row| self.clip_from_anchor.row(row).truncate());
         let axis = rows[2].normalize_or_zero();
         let scale = |row: DVec3| (row - axis * row.dot(axis)).length();
-        let scale = scale(rows[0]).min(scale(rows[1]));
-        Some(2.0 * clip.w / (self.map_size * scale))
+        let texels = self.size_texels * DVec2::new(scale(rows[0]), scale(rows[1]));
+        Some(2.0 * clip.w / texels.min_element())
     }
 }
 

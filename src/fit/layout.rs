@@ -1,0 +1,82 @@
+//! Keeps the layout of a light's cascades from frame to frame.
+
+use crate::fit::layout_choice::{Layout, Prediction};
+
+/// Is the number of frames from one prediction to the next.
+const FRAMES_BETWEEN_PREDICTIONS: u32 = 16;
+
+/// Is the factor by which the cost of another layout must be lower for a change.
+const BETTER: f64 = 0.85;
+
+/// Is the number of predictions in a row for which another layout must be better.
+const PREDICTIONS_FOR_CHANGE: u32 = 8;
+
+/// Is the factor by which the cost of another layout must be lower for a change at once.
+const MUCH_BETTER: f64 = 0.5;
+
+/// Holds a layout from frame to frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct HeldLayout {
+    pub layout: Layout,
+    /// Is the error that was predicted for it last.
+    pub predicted_error: f64,
+    /// Counts the frames since the last prediction.
+    frames: u32,
+    /// Counts the predictions in a row for which another layout was better.
+    better: u32,
+}
+
+impl HeldLayout {
+    /// Returns the layout of the next frame. `predict` is called where a prediction is due; it
+    /// returns `None` where no shadow is seen, so that any layout serves as well.
+    pub fn next<'a>(
+        held: Option<&Self>,
+        map_size: u32,
+        predict: impl FnOnce() -> Option<Prediction<'a>>,
+    ) -> Self {
+        match held {
+            Some(held) if held.frames + 1 < FRAMES_BETWEEN_PREDICTIONS => {
+                return Self {
+                    frames: held.frames + 1,
+                    ..*held
+                };
+            }
+            _ => {}
+        }
+        let Some(prediction) = predict() else {
+            let none = Self {
+                layout: Layout::single(map_size),
+                predicted_error: 0.0,
+                frames: 0,
+                better: 0,
+            };
+            // The first better layout for shadows that come into view is taken at once.
+            return Self {
+                frames: 0,
+                better: PREDICTIONS_FOR_CHANGE - 1,
+                ..held.copied().unwrap_or(none)
+            };
+        };
+        let best = prediction.best();
+        let taken = Self {
+            layout: best,
+            predicted_error: prediction.error(&best),
+            frames: 0,
+            better: 0,
+        };
+        let Some(held) = held else {
+            return taken;
+        };
+        let ratio = prediction.cost(&best) / prediction.cost(&held.layout);
+        let better = if ratio < BETTER { held.better + 1 } else { 0 };
+        if ratio < MUCH_BETTER || better >= PREDICTIONS_FOR_CHANGE {
+            return taken;
+        }
+        Self {
+            predicted_error: prediction.error(&held.layout),
+            frames: 0,
+            better,
+            ..*held
+        }
+    }
+}
