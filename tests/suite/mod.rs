@@ -38,6 +38,7 @@ mod hard_cases;
 mod keeping;
 mod kept_origin;
 mod local_reach;
+mod local_receiver_parity;
 mod mesh_errors;
 mod mesh_geometry;
 mod mesh_pipelines;

@@ -35,7 +35,10 @@ fn module_of(bias: Bias) -> (&'static str, &'static str) {
 }
 
 /// Creates one bind group with the light's own uniform buffer.
-fn view_group(gpu: &Gpu, buffer: &wgpu::Buffer) -> (wgpu::BindGroupLayout, wgpu::BindGroup) {
+pub(super) fn view_group(
+    gpu: &Gpu,
+    buffer: &wgpu::Buffer,
+) -> (wgpu::BindGroupLayout, wgpu::BindGroup) {
     let layout = gpu
         .device
         .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
