@@ -211,7 +211,7 @@ fn chosen_scenes(names: &[String]) -> Result<Vec<Scene>, String> {
     Ok(scenes)
 }
 
-const COST_WORDS: &str = "texels cleared + texture instructions of 1920×1080 pixels";
+const COST_WORDS: &str = "texels cleared + lookup cycles of 1920×1080 pixels (RDNA 2)";
 
 fn chart_of_scene(arguments: &Arguments, samples: &[Sample]) -> Result<(), Box<dyn Error>> {
     let Some(first) = samples.first() else {

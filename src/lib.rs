@@ -196,7 +196,7 @@
 //!
 //! - of [`ShadowBindings::wgsl`]: `shadow_NAME`, `shadow_view_NAME`, `shadow_map_NAME` and `shadow_views_NAME` for each light, and
 //!   `shadow_geometric_normal`;
-//! - of [`shader::MODULES`]: the names of the modules `view`, `cube_face`, `normal`, `texels_by_samples`, `bias_*`, and `filter_*`
+//! - of [`shader::MODULES`]: the names of the modules `view`, `cube_face`, `normal`, `texels_by_offsets`, `texels_by_samples`, `bias_*`, and `filter_*`
 //!   except `filter_direction`; of their functions `shadow_view_holds`, `shadow_limited_by_depth`,
 //!   `shadow_limited_by_distance`, `shadow_cube_face`, `shadow_geometric_normal`,
 //!   `shadow_receiver_NAME_directional` and `shadow_receiver_NAME_local` of a module `bias_NAME`, and

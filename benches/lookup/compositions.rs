@@ -4,6 +4,7 @@
 use std::error::Error;
 
 use shadow_support::gpu::{Gpu, GpuRequest};
+use shadow_support::lookup_cost;
 use wgpu_shadows::pool::{OmniShadowPool, PoolDescriptor, SpotShadowPool};
 use wgpu_shadows::{
     Bias, DirectionalShadow, DirectionalShadowDescriptor, Filter, OmniShadow, OmniShadowDescriptor,
@@ -21,6 +22,7 @@ pub struct Composition {
 
 const FRAME: &str = include_str!("frame.wgsl");
 const TEXTBOOK: &str = include_str!("textbook.wgsl");
+const TEXTBOOK_CUBE: &str = include_str!("textbook_cube.wgsl");
 const NOTHING: &str = "
 fn visibility(position: vec3<f32>, normal: vec3<f32>) -> f32 {
     return position.x + normal.x;
@@ -33,8 +35,10 @@ const POOL_INDEX: &str = "
 ";
 
 /// Lists the kinds of light.
-const KINDS: [Kind; 10] = [
+const KINDS: [Kind; 12] = [
     Kind::Sun(1),
+    Kind::Sun(2),
+    Kind::Sun(3),
     Kind::Sun(4),
     Kind::Sun(8),
     Kind::Blended(4),
@@ -56,35 +60,32 @@ enum Kind {
     Points,
 }
 
-const BIASES: [(&str, Bias); 3] = [
-    ("", Bias::Auto),
-    (" normal_offset", Bias::NormalOffset),
-    (
-        " manual",
-        Bias::Manual {
-            constant: 0.01,
-            slope: 0.1,
-        },
-    ),
+const BIASES: [Bias; 3] = [
+    Bias::Auto,
+    Bias::NormalOffset,
+    Bias::Manual {
+        constant: 0.01,
+        slope: 0.1,
+    },
 ];
 
 /// Lists the filters of all kinds of light. The sharpness does not change the shader.
-const FILTERS: [(&str, Filter); 9] = [
-    ("nearest", Filter::Nearest),
-    ("hardware", Filter::Hardware),
-    ("box", Filter::Box),
-    ("bilinear", Filter::Bilinear { sharpness: 1.0 }),
-    ("tent3", Filter::Tent3 { sharpness: 3.0 }),
-    ("tent5", Filter::Tent5 { sharpness: 1.0 }),
-    ("tent7", Filter::Tent7 { sharpness: 1.0 }),
-    ("pcss", Filter::Pcss { light_size: 0.01 }),
-    ("pcss_rotated", Filter::PcssRotated { light_size: 0.01 }),
+const FILTERS: [Filter; 9] = [
+    Filter::Nearest,
+    Filter::Hardware,
+    Filter::Box,
+    Filter::Bilinear { sharpness: 1.0 },
+    Filter::Tent3 { sharpness: 3.0 },
+    Filter::Tent5 { sharpness: 1.0 },
+    Filter::Tent7 { sharpness: 1.0 },
+    Filter::Pcss { light_size: 0.01 },
+    Filter::PcssRotated { light_size: 0.01 },
 ];
 
 /// Lists the filters that only point lights have.
-const DIRECTIONS: [(&str, Filter); 2] = [
-    ("grid", Filter::DirectionGrid { radius: 0.1 }),
-    ("star", Filter::DirectionStar { radius: 0.04 }),
+const DIRECTIONS: [Filter; 2] = [
+    Filter::DirectionGrid { radius: 0.1 },
+    Filter::DirectionStar { radius: 0.04 },
 ];
 
 /// Returns all shaders. The library emits its own on a device, which is any that can gather.
@@ -93,16 +94,17 @@ pub fn all() -> Result<Vec<Composition>, Box<dyn Error>> {
     let mut all = vec![
         lookup("nothing", NOTHING.to_owned()),
         lookup("textbook 3x3", TEXTBOOK.to_owned()),
+        lookup("textbook cube", TEXTBOOK_CUBE.to_owned()),
     ];
     for kind in KINDS {
         let directions = match kind {
             Kind::Point { .. } | Kind::Points => &DIRECTIONS[..],
             _ => &[],
         };
-        for (filter_name, filter) in FILTERS.iter().chain(directions) {
-            for (bias_name, bias) in BIASES {
-                let name = format!("{} {filter_name}{bias_name}", kind.name());
-                all.push(lookup(&name, kind.wgsl(&gpu, *filter, bias)?));
+        for &filter in FILTERS.iter().chain(directions) {
+            for bias in BIASES {
+                let name = lookup_cost::composition(&kind.name(), filter, bias);
+                all.push(lookup(&name, kind.wgsl(&gpu, filter, bias)?));
             }
         }
     }

@@ -14,12 +14,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
-
-use table::Table;
+use shadow_isa::Table;
 
 mod compositions;
 mod figures;
-mod table;
 
 /// Lists a chip of each instruction set that the driver's version compiles for and that WebGPU runs
 /// on: RDNA 2, RDNA 1, GCN 5 and GCN 4.

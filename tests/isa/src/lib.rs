@@ -11,9 +11,11 @@
 mod compiler;
 mod driver;
 mod spirv;
+mod table;
 
 pub use compiler::{Compiler, Figures};
 pub use driver::Driver;
+pub use table::{Row, Table};
 
 /// States why a shader could not be compiled.
 #[derive(Debug, thiserror::Error)]

@@ -7,6 +7,7 @@ use super::meshes::{ViewUniform, WorldMeshes, depth_pipeline, lookup_types, map_
 use crate::bind;
 use crate::camera;
 use crate::gpu::Gpu;
+use crate::lookup_cost;
 use crate::scene::{Light, Scene};
 use crate::technique::{Cost, Footprint, Lookup, Technique};
 
@@ -144,7 +145,7 @@ impl Technique for CubeTechnique<'_> {
             draws: 6 * self.meshes.count(),
             passes: 6,
             bytes: 4 * texels,
-            texture_instructions: samples,
+            lookup_cycles: lookup_cost::textbook_cube(samples),
             texels_touched: samples,
         }
     }

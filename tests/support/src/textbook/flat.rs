@@ -6,6 +6,7 @@ use wgpu_shadows::ShadowError;
 use super::meshes::{ViewUniform, WorldMeshes, depth_pipeline, lookup_types, map_with_sampler};
 use crate::bind;
 use crate::gpu::Gpu;
+use crate::lookup_cost;
 use crate::scene::{Light, Scene};
 use crate::technique::{Cost, Footprint, Lookup, Technique};
 
@@ -129,7 +130,7 @@ impl Technique for FlatTechnique<'_> {
             draws: self.meshes.count(),
             passes: 1,
             bytes: 4 * texels,
-            texture_instructions: 9,
+            lookup_cycles: lookup_cost::textbook_flat(),
             texels_touched: 9,
         }
     }

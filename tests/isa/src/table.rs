@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use shadow_isa::Figures;
+use crate::Figures;
 
 /// Is the first line of the columns.
 const COLUMNS: &str = "composition,family,vgprs,waves,instructions,latency,inverse_throughput";
@@ -14,14 +14,19 @@ const TOLERANCE: f64 = 0.03;
 /// Holds the figures of one version of the driver.
 #[derive(Default)]
 pub struct Table {
+    /// Names the driver and its version.
     pub driver: String,
+    /// Holds the rows in the order in which they were compiled.
     pub rows: Vec<Row>,
 }
 
 /// Holds the figures of a shader on one chip.
 pub struct Row {
+    /// Names the shader.
     pub composition: String,
+    /// Names the chip.
     pub family: String,
+    /// Holds what the compiler says.
     pub figures: Figures,
 }
 
@@ -70,7 +75,10 @@ impl Table {
         text
     }
 
-    /// Returns the table that `text` holds, or a message that names the line that does not.
+    /// Returns the table that `text` holds.
+    ///
+    /// # Errors
+    /// Returns a message that names the first line that is no row.
     pub fn parse(text: &str) -> Result<Self, String> {
         let mut table = Self::default();
         for line in text.lines() {
