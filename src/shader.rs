@@ -172,7 +172,8 @@ pub fn compose(names: &[&str]) -> Result<String, BindingsError> {
     };
     let is_replaced = |module: &ShaderModule| {
         let name = module.replaces.unwrap_or(module.name);
-        let last = chosen().filter(|other| other.replaces == Some(name)).last();
+        let mut last_first = chosen().rev();
+        let last = last_first.find(|other| other.replaces == Some(name));
         last.is_some_and(|last| last.name != module.name)
     };
     Ok(chosen()

@@ -7,12 +7,12 @@
 //!
 //! No input makes these functions panic.
 
-mod filters;
+mod filter;
 mod receiver;
 
 use glam::DVec2;
 
-pub use filters::visibility;
+pub use filter::visibility;
 pub use receiver::{holds, receiver, weight};
 
 /// Holds one layer of a depth map as read back from the device: rows from the top, in ndc depth (reversed: near 1, far
