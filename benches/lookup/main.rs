@@ -20,8 +20,8 @@ mod compositions;
 mod figures;
 
 /// Lists a chip of each instruction set that the driver's version compiles for and that WebGPU runs
-/// on: RDNA 2, RDNA 1, GCN 5 and GCN 4.
-const FAMILIES: [&str; 4] = ["NAVI21", "NAVI10", "VEGA10", "POLARIS10"];
+/// on: RDNA 2, RDNA 1, RDNA 3, GCN 5 and GCN 4.
+const FAMILIES: [&str; 5] = ["NAVI21", "NAVI10", "GFX1100", "VEGA10", "POLARIS10"];
 
 /// Tells what lookups cost on real instruction sets.
 #[derive(Parser)]
@@ -67,6 +67,7 @@ fn run(arguments: &Arguments) -> Result<ExitCode, Box<dyn Error>> {
     let table = figures::of(&compositions, &arguments.families, &folder)?;
     if arguments.csv {
         print!("{}", table.csv());
+        eprintln!("compiled by {}", table.driver);
     } else if !arguments.check {
         for family in &arguments.families {
             println!("{}", table.readable(family));
@@ -74,7 +75,7 @@ fn run(arguments: &Arguments) -> Result<ExitCode, Box<dyn Error>> {
     }
     let path = root.join("doc/lookup_cost.csv");
     if arguments.update {
-        fs::write(&path, table.csv())?;
+        fs::write(&path, format!("# {}\n{}", table.driver, table.csv()))?;
         println!("wrote {}", path.display());
     }
     if arguments.check {

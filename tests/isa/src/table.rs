@@ -65,9 +65,9 @@ impl Row {
 }
 
 impl Table {
-    /// Returns the table as CSV, with the driver in a first line that begins with `#`.
+    /// Returns the rows as CSV.
     pub fn csv(&self) -> String {
-        let mut text = format!("# {}\n{COLUMNS}\n", self.driver);
+        let mut text = format!("{COLUMNS}\n");
         for row in &self.rows {
             text += &row.csv();
             text.push('\n');
@@ -75,7 +75,8 @@ impl Table {
         text
     }
 
-    /// Returns the table that `text` holds.
+    /// Returns the table that `text` holds: rows as CSV, below a line that begins with `#` and names
+    /// the driver.
     ///
     /// # Errors
     /// Returns a message that names the first line that is no row.
