@@ -6,12 +6,12 @@ use crate::cast::{FrameCasters, Plan, Recorder, ViewDraws};
 use crate::error::DeviceError;
 use crate::gpu::{DepthMap, UploadBuffer, capture_device_errors};
 use crate::receive::layer_limits::check_layers;
-use crate::receive::light_uniforms::{ALL_TEXELS, LightUniforms, NO_LIMIT, empty_view_uniform};
+use crate::receive::layer_state::LayerState;
+use crate::receive::light_uniforms::{LightUniforms, empty_view_uniform, lights};
 use crate::receive::report::{ShadowReport, ViewReport, ViewStatus};
 use crate::receive::sampled_maps::{SampledMaps, Selection};
-use crate::receive::uniforms::ShadowMapping;
 use crate::receive::{Sampling, ShadowViewUniform, view_uniform_bytes};
-use crate::{ShadowError, ShadowView, report::SliceReport};
+use crate::{ShadowError, ShadowView};
 
 /// Holds what shaders sample of a light: its depth texture and its uniform buffer, with the settings that determine how
 /// they are sampled.
@@ -59,40 +59,6 @@ pub(crate) struct ShadowMapsDescriptor<'a> {
     pub selection: Selection,
     /// States that the maps are those of a pool, whose WGSL function takes the index of a light.
     pub indexed: bool,
-}
-
-/// Describes a layer of a light of this frame, with the values that its uniform has where nothing casts into it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct LayerState {
-    pub layer: u32,
-    /// Is the position of a local light; zero for a directional one.
-    pub anchor_render: Vec3,
-    /// Is the world distance beyond which the light does not shine; infinite for a directional one.
-    pub range_world: f64,
-    /// Is where the light's shadows end, as the uniform has it.
-    pub limit: [f32; 4],
-    /// Bounds the texels in which positions have shadows, in addition to the bounds of the map:
-    /// least x and y, greatest x and y.
-    pub shadowed_texels: [f32; 4],
-    /// States that the layer needed drawing and was deferred.
-    pub deferred: bool,
-    /// Describes the slice of a camera's view that the layer covers as a cascade.
-    pub slice: Option<SliceReport>,
-}
-
-impl LayerState {
-    /// Returns the state of a layer of a directional light without a limit to its shadows.
-    pub fn directional(layer: u32, slice: Option<SliceReport>) -> Self {
-        Self {
-            layer,
-            anchor_render: Vec3::ZERO,
-            range_world: f64::INFINITY,
-            limit: NO_LIMIT,
-            shadowed_texels: ALL_TEXELS,
-            deferred: false,
-            slice,
-        }
-    }
 }
 
 /// Holds the input of a frame for the maps.
@@ -293,35 +259,20 @@ impl ShadowMaps {
     ) -> Vec<ShadowViewUniform> {
         let mut uniforms = std::mem::take(&mut self.memory.uniforms);
         uniforms.clear();
-        let layer_count = self.map.layers();
         let empty = |layer| empty_view_uniform(layer, Vec3::ZERO, f64::INFINITY);
-        uniforms.extend((0..layer_count).map(empty));
+        uniforms.extend((0..self.map.layers()).map(empty));
         for base in layers {
             let (anchor, range) = (base.anchor_render, base.range_world);
             uniforms[base.layer as usize] = empty_view_uniform(base.layer, anchor, range);
         }
         for light in lights(views, self.views_per_light) {
-            let shared = LightUniforms::of(light);
-            let shadowed = |view: &ShadowView| {
-                let base = layers.iter().find(|base| base.layer == view.layer());
-                base.map_or(ALL_TEXELS, |base| base.shadowed_texels)
-            };
-            let uniform_of = |view: &ShadowView| shared.view(view, &self.sampling, shadowed(view));
-            // Shaders read what the views of a light have in common from any of them, those into
-            // which nothing casts included.
-            let first_layer = light[0].view.layer();
-            let first_layer = first_layer - first_layer % self.views_per_light;
-            for layer in first_layer..first_layer + self.views_per_light {
-                uniforms[layer as usize] = ShadowViewUniform {
-                    mapping: ShadowMapping::EMPTY,
-                    layer,
-                    ..uniform_of(&light[0].view)
-                };
-            }
-            for draws in light {
-                let layer = draws.view.layer() as usize;
-                uniforms[layer] = uniform_of(&draws.view);
-            }
+            LightUniforms::of(light).fill(
+                &mut uniforms,
+                light,
+                self.views_per_light,
+                layers,
+                &self.sampling,
+            );
         }
         for base in layers {
             uniforms[base.layer as usize].limit = base.limit;
@@ -373,12 +324,6 @@ impl ShadowMaps {
     pub(crate) fn holds(&self, view: &ShadowView) -> bool {
         self.recorder.holds(view)
     }
-}
-
-/// Returns the views of each light in turn.
-fn lights(views: &[ViewDraws], views_per_light: u32) -> impl Iterator<Item = &[ViewDraws]> {
-    let light = move |draws: &ViewDraws| draws.view.layer() / views_per_light;
-    views.chunk_by(move |a, b| light(a) == light(b))
 }
 
 fn view_report(draws: &ViewDraws, casters: &FrameCasters<'_>) -> ViewReport {
