@@ -131,7 +131,7 @@
 //! it was drawn, and the bias allows for that rounding. The map is drawn again where the rounding exceeds both twice that of a new
 //! map and 1/64 of a texel.
 //!
-//! [`hard_cases`] lists scenes and inputs that break shadow maps, with what the crate promises for each and what was measured.
+//! [`troubleshooting`] tells what faults look like, what causes them and what to do. [`hard_cases`] lists scenes and inputs that break shadow maps, with what the crate promises for each and what was measured.
 //!
 //! # Own bind groups
 //!
@@ -262,6 +262,10 @@ pub mod report {
 #[cfg(doc)]
 #[doc = include_str!("../doc/hard_cases.md")]
 pub mod hard_cases {}
+
+#[cfg(doc)]
+#[doc = include_str!("../doc/troubleshooting.md")]
+pub mod troubleshooting {}
 
 /// Compiles the code of the README.
 #[cfg(doctest)]

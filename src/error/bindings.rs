@@ -10,7 +10,7 @@ use crate::error::DeviceError;
 pub enum BindingsError {
     /// The name of a light cannot become part of WGSL identifiers.
     #[error(
-        "ShadowBindingsDescriptor::lights: name must be a lower-case WGSL identifier ([a-z][a-z0-9_]*, no `__`, no `_` or digit at the end, no `map_`, `view_` or `views_` in front, none of the library's own), got {name:?}"
+        "ShadowBindingsDescriptor::lights: name must be a lower-case WGSL identifier ([a-z][a-z0-9_]*, no `__`, no `_` or digit at the end, no `map_`, `view_`, `views_`, `place_of_`, `axes_of_` or `cascade_` in front, none of the library's own), got {name:?}"
     )]
     Name {
         /// Is the name in the descriptor.

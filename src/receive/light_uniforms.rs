@@ -89,9 +89,9 @@ impl LightUniforms {
         }
     }
 
-    /// Writes the uniforms of all views of a light into those of all layers. `layers` is in the order
-    /// of the layers, as is `light`. Shaders read what the
-    /// views of a light have in common from any of them, those into which nothing casts included.
+    /// Writes the uniforms of all views of a light into those of all layers. `light` and `layers` are
+    /// in the order of layers. Shaders read what the views of a light have in common from any of
+    /// them, those into which nothing casts included.
     pub fn fill(
         &self,
         uniforms: &mut [ShadowViewUniform],
