@@ -11,6 +11,6 @@ fn shadow_sun(position: vec3<f32>, normal: vec3<f32>) -> f32 {
     // Beyond the map's sides the sampler reads the texel at the edge. Beyond its far plane the receiver's depth is
     // below every depth that a map can contain, so that whatever it contains seems to lie in front. `receiver.inside`
     // would be false there, and is not tested.
-    let uv = receiver.texel / receiver.map_size;
+    let uv = receiver.texel * receiver.uv_per_texel;
     return textureSampleCompareLevel(sun_map, clamping_sampler, uv, receiver.layer, receiver.depth);
 }
