@@ -1,12 +1,13 @@
-//! Tells what lookups cost on real instruction sets, without a GPU: Mesa's compiler for AMD chips says
-//! how many registers, instructions and cycles each comes to.
+//! Tells what lookups cost on real instruction sets, without a GPU: Mesa's compiler for AMD chips
+//! says how many registers, instructions and cycles each comes to.
 //!
-//! `cargo bench --bench lookup` prints a table, `-- --csv` all of it as CSV. `-- --check` fails where a
-//! figure has worsened by more than 3 % against `doc/lookup_cost.csv`, and `-- --update` writes that
-//! file. The figures depend on the version of the driver alone, which is that of Debian 12.
+//! `cargo bench --bench lookup` prints a table, `-- --csv` all of it as CSV. `-- --check` fails
+//! where a figure has worsened by more than 3 % against `doc/lookup_cost.csv`, and `-- --update`
+//! writes that file. The figures depend on the version of the driver alone, which is that of Debian
+//! 12.
 //!
-//! The compiler's model counts the body of a loop eightfold, so the figures of penumbrae, of filters
-//! by direction and of blending cascades compare only with each other.
+//! The compiler's model counts the body of a loop eightfold, so the figures of penumbrae, of
+//! filters by direction and of blending cascades compare only with each other.
 
 use std::error::Error;
 use std::fs;

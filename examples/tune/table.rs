@@ -1,4 +1,5 @@
-//! Shows all configurations: a table of those that matter, all of them as CSV, a chart, and an image.
+//! Shows all configurations: a table of those that matter, all of them as CSV, a chart, and an
+//! image.
 
 use std::error::Error;
 use std::fmt::Write as _;

@@ -4,7 +4,8 @@ use thiserror::Error;
 
 use crate::error::DeviceError;
 
-/// Tells why [`ShadowBindings::new`](crate::ShadowBindings::new) or [`compose`](crate::shader::compose) failed.
+/// Tells why [`ShadowBindings::new`](crate::ShadowBindings::new) or
+/// [`compose`](crate::shader::compose) failed.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum BindingsError {
@@ -32,8 +33,8 @@ pub enum BindingsError {
         /// Is the device's `max_bind_groups`.
         maximum: u32,
     },
-    /// The lights need more of a resource than one shader stage may use on this device, or the uniforms of one light
-    /// are larger than the device can bind.
+    /// The lights need more of a resource than one shader stage may use on this device, or the
+    /// uniforms of one light are larger than the device can bind.
     #[error(
         "ShadowBindingsDescriptor::lights: the device's {limit} must be at least {needed}, and it is {maximum}"
     )]

@@ -4,10 +4,12 @@ use glam::Vec3;
 
 use crate::report::SliceReport;
 
-/// Is the uniform's `limit` for shadows that end where the maps end: their weight is one everywhere.
+/// Is the uniform's `limit` for shadows that end where the maps end: their weight is one
+/// everywhere.
 pub(crate) const NO_LIMIT: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 
-/// Is the region of texels in which positions have shadows, for shadows that end where the map ends.
+/// Is the region of texels in which positions have shadows, for shadows that end where the map
+/// ends.
 pub(crate) const ALL_TEXELS: [f32; 4] = [
     f32::NEG_INFINITY,
     f32::NEG_INFINITY,
@@ -15,7 +17,8 @@ pub(crate) const ALL_TEXELS: [f32; 4] = [
     f32::INFINITY,
 ];
 
-/// Describes a layer of a light of this frame, with the values that its uniform has where nothing casts into it.
+/// Describes a layer of a light of this frame, with the values that its uniform has where nothing
+/// casts into it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LayerState {
     pub layer: u32,

@@ -1,5 +1,5 @@
-//! Determines how the filters that compare each texel read the texels: by gathers, or by samples where a device has no
-//! gather.
+//! Determines how the filters that compare each texel read the texels: by gathers, or by samples
+//! where a device has no gather.
 
 use crate::error::DeviceRefusal;
 use crate::gpu::{capture_device_errors, fullscreen_pipeline};
@@ -17,16 +17,18 @@ pub(crate) enum TexelAccess {
 }
 
 impl TexelAccess {
-    /// Returns what shaders of `device` can do. All backends can gather with offsets except OpenGL, for which naga
-    /// writes no such gather of a depth texture, and where GLSL ES 3.00 has no gather at all. There a pipeline that
-    /// gathers is created as a test, so that nothing depends on names and versions.
+    /// Returns what shaders of `device` can do. All backends can gather with offsets except OpenGL,
+    /// for which naga writes no such gather of a depth texture, and where GLSL ES 3.00 has no
+    /// gather at all. There a pipeline that gathers is created as a test, so that nothing depends
+    /// on names and versions.
     pub fn of(device: &wgpu::Device) -> Self {
         if device.adapter_info().backend != wgpu::Backend::Gl {
             return Self::OffsetGathers;
         }
         match capture_device_errors(device, || gathering_pipeline(device)) {
             Err(DeviceRefusal::Refused(_)) => Self::Samples,
-            // A device that is lost or out of memory returns that error again when the bind group is created.
+            // A device that is lost or out of memory returns that error again when the bind group
+            // is created.
             Ok(_) | Err(_) => Self::Gathers,
         }
     }

@@ -1,11 +1,11 @@
 //! Tests the biases of local lights on the device against the CPU reference: the position of a
 //! receiver in the map, its depth, its gradient, and whether the map covers it.
 //!
-//! The tolerance is a first-order bound of f32 arithmetic. Every rounding of a sum or a product acts
-//! as a relative change, of at most u = 2^-24, of something that an input was multiplied by or added
-//! to, so that it can be attributed to inputs. No input passes through more than [`ROUNDINGS`]
-//! operations. So each number of the position, the normal and the uniform is changed by that many
-//! times u of its magnitude, and the changes of the reference's results are summed.
+//! The tolerance is a first-order bound of f32 arithmetic. Every rounding of a sum or a product
+//! acts as a relative change, of at most u = 2^-24, of something that an input was multiplied by or
+//! added to, so that it can be attributed to inputs. No input passes through more than
+//! [`ROUNDINGS`] operations. So each number of the position, the normal and the uniform is changed
+//! by that many times u of its magnitude, and the changes of the reference's results are summed.
 
 use glam::{DVec2, DVec3, Vec3};
 use shadow_support::gpu::Gpu;
@@ -171,8 +171,8 @@ fn raw(receiver: ShadowReceiver) -> array<vec4<f32>, 2> {{
             assert!(margin < 1.0, "{context}");
             continue;
         }
-        // A receiver that the view does not cover has no meaning, nor has one where rounding decides
-        // whether it is past the horizon of its surface.
+        // A receiver that the view does not cover has no meaning, nor has one where rounding
+        // decides whether it is past the horizon of its surface.
         let decided = tolerance[2] < 0.25;
         if !inside || !decided {
             continue;

@@ -1,5 +1,5 @@
-//! Tests that the WGSL has the names that the crate's documentation promises under semver. Shaders such as an engine
-//! writes use each of them.
+//! Tests that the WGSL has the names that the crate's documentation promises under semver. Shaders
+//! such as an engine writes use each of them.
 
 use wgpu_shadows::{Bias, Filter, ShadowBindings, ShadowBindingsDescriptor, shader};
 

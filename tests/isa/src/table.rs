@@ -75,8 +75,8 @@ impl Table {
         text
     }
 
-    /// Returns the table that `text` holds: rows as CSV, below a line that begins with `#` and names
-    /// the driver.
+    /// Returns the table that `text` holds: rows as CSV, below a line that begins with `#` and
+    /// names the driver.
     ///
     /// # Errors
     /// Returns a message that names the first line that is no row.

@@ -249,7 +249,8 @@ impl Technique for LibraryTechnique<'_> {
     }
 
     fn band_world(&self) -> f64 {
-        // These are the corners of the cube of offsets, which grows up to twofold with the distance from the camera.
+        // These are the corners of the cube of offsets, which grows up to twofold with the distance
+        // from the camera.
         2.0 * 3f64.sqrt() * f64::from(self.options.filter.radius_world())
     }
 

@@ -1,5 +1,5 @@
-//! Tells what a lookup costs on a real instruction set, from the table that `cargo bench --bench lookup --
-//! --update` writes.
+//! Tells what a lookup costs on a real instruction set, from the table that
+//! `cargo bench --bench lookup -- --update` writes.
 //!
 //! The cost is the compiler's inverse throughput on RDNA 2: SIMD cycles per wave of 32 pixels where
 //! enough waves run. Its model counts the body of every loop eightfold, so filters that loop are

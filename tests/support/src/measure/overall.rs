@@ -77,8 +77,8 @@ fn mean(configuration: Configuration, samples: &[&Sample]) -> Overall {
     }
 }
 
-/// Returns whether a configuration is on the front of work per frame against rmse. The sentence names what dominates
-/// it.
+/// Returns whether a configuration is on the front of work per frame against rmse. The sentence
+/// names what dominates it.
 pub fn judge(entries: &[Overall], configuration: &Configuration) -> Result<String, String> {
     let own = find(entries, configuration)?;
     let front = "on the Pareto front of work per frame against rmse";

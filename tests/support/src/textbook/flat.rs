@@ -144,7 +144,8 @@ impl Technique for FlatTechnique<'_> {
     }
 }
 
-/// Returns the scene's bounds as seen along `direction`: -1 to 1 across, depth 0 to 1 away from the light.
+/// Returns the scene's bounds as seen along `direction`: -1 to 1 across, depth 0 to 1 away from the
+/// light.
 fn orthographic(scene: &Scene, direction: DVec3) -> DMat4 {
     let light_from_render = looking_along(direction);
     let bounds = scene.bounds();
@@ -183,8 +184,8 @@ fn perspective(position: DVec3, direction: DVec3, outer_angle: f64, far: f64) ->
     clip_from_light * looking_along(direction) * DMat4::from_translation(-position)
 }
 
-/// Returns right-handed axes that look along `direction`, as `lookAt` with +Y up does, and with another up vector where
-/// they look along +Y.
+/// Returns right-handed axes that look along `direction`, as `lookAt` with +Y up does, and with
+/// another up vector where they look along +Y.
 fn looking_along(direction: DVec3) -> DMat4 {
     let back = -direction.normalize();
     let right = DVec3::Y.cross(back).try_normalize().unwrap_or(DVec3::X);
