@@ -7,8 +7,8 @@ use std::path::Path;
 use std::process::Command;
 
 use shadow_isa::{Compiler, Driver, Figures};
+use shadow_support::compositions::Composition;
 
-use crate::compositions::Composition;
 use crate::table::{Row, Table};
 
 /// Compiles `compositions` for the chips of `families`, through files in `folder`.

@@ -11,6 +11,7 @@
 //! scene.rs      meshes, a light and a camera; scenes.rs: the generated ones
 //! truth.rs      the ray caster, checked by closed_form.rs
 //! technique.rs  anything that fills maps and is looked up: library.rs, textbook/
+//! compositions/ every shader that the library emits, for checks by compilers
 //! measure/      errors and costs of techniques in scenes, as tables and charts
 //! ```
 
@@ -18,6 +19,7 @@ pub mod bind;
 pub mod camera;
 pub mod clock;
 pub mod closed_form;
+pub mod compositions;
 pub mod gpu;
 pub mod library;
 pub mod measure;
