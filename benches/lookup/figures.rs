@@ -7,8 +7,7 @@ use std::path::Path;
 use std::process::Command;
 
 use shadow_isa::{Compiler, Driver, Figures, Row, Table};
-
-use crate::compositions::Composition;
+use shadow_support::compositions::Composition;
 
 /// Compiles `compositions` for the chips of `families`, through files in `folder`.
 pub fn of(

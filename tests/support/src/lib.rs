@@ -12,6 +12,7 @@
 //! truth.rs      the ray caster, checked by closed_form.rs
 //! technique.rs  anything that fills maps and is looked up: library.rs, textbook/; what a lookup
 //!               costs: lookup_cost.rs
+//! compositions/ every shader that the library emits, for checks by compilers
 //! measure/      errors and costs of techniques in scenes, as tables and charts
 //! ```
 
@@ -19,6 +20,7 @@ pub mod bind;
 pub mod camera;
 pub mod clock;
 pub mod closed_form;
+pub mod compositions;
 pub mod gpu;
 pub mod library;
 pub mod lookup_cost;

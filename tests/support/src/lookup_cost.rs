@@ -10,6 +10,7 @@ use std::sync::LazyLock;
 use shadow_isa::Table;
 use wgpu_shadows::{Bias, Filter};
 
+use crate::compositions;
 use crate::scene::Light;
 
 /// Is the chip of which costs are told.
@@ -25,7 +26,7 @@ pub fn library(light: &Light, cascades: u32, filter: Filter, bias: Bias) -> f64 
         Light::Spot { .. } => "spot".to_owned(),
         Light::Point { .. } => "point".to_owned(),
     };
-    let cycles = |filter| of(&composition(&kind, filter, bias));
+    let cycles = |filter| of(&compositions::name(&kind, filter, bias));
     match filter {
         Filter::DirectionGrid { .. } => 64.0 * cycles(Filter::Nearest),
         Filter::DirectionStar { .. } => 20.0 * cycles(Filter::Nearest),
@@ -46,30 +47,6 @@ pub fn textbook_flat() -> f64 {
 /// Returns the cycles per pixel of the textbook's lookup in a cube map, of so many samples.
 pub fn textbook_cube(samples: u32) -> f64 {
     of("textbook cube") * f64::from(samples)
-}
-
-/// Returns the name of a shader in the table.
-pub fn composition(kind: &str, filter: Filter, bias: Bias) -> String {
-    let filter = match filter {
-        Filter::Nearest => "nearest",
-        Filter::Hardware => "hardware",
-        Filter::Box => "box",
-        Filter::Bilinear { .. } => "bilinear",
-        Filter::Tent3 { .. } => "tent3",
-        Filter::Tent5 { .. } => "tent5",
-        Filter::Tent7 { .. } => "tent7",
-        Filter::Pcss { .. } => "pcss",
-        Filter::PcssRotated { .. } => "pcss_rotated",
-        Filter::DirectionGrid { .. } => "grid",
-        Filter::DirectionStar { .. } => "star",
-        _ => "unknown",
-    };
-    let bias = match bias {
-        Bias::NormalOffset => " normal_offset",
-        Bias::Manual { .. } => " manual",
-        _ => "",
-    };
-    format!("{kind} {filter}{bias}")
 }
 
 /// Returns the cycles per pixel of a shader in the table.
