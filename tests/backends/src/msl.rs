@@ -90,7 +90,10 @@ fn vertex_buffer(stage: &Stage<'_>) -> VertexBufferMapping {
             return None;
         };
         let format = match stage.module.types[argument.ty].inner {
-            TypeInner::Vector { size, .. } if size == VectorSize::Tri => VertexFormat::Float32x3,
+            TypeInner::Vector {
+                size: VectorSize::Tri,
+                ..
+            } => VertexFormat::Float32x3,
             _ => VertexFormat::Float32x4,
         };
         Some(AttributeMapping {
