@@ -85,7 +85,8 @@ fn webgl_2_texts(composition: &Composition) -> Result<Option<[String; 2]>, Box<d
         return Ok(None);
     };
     let pipeline = Pipeline::new(&wgsl, vertex, fragment)?;
-    let mut texts = glsl::write(&pipeline, glsl::WEBGL_2)?;
+    let texts = glsl::write(&pipeline, glsl::Device::WEBGL_2)?;
+    let mut texts: Vec<_> = texts.into_iter().map(|text| text.source).collect();
     // A pass that draws depth alone has a fragment shader that does nothing, which WebGL wants and wgpu adds.
     if fragment.is_none() {
         texts.push("#version 300 es\nprecision lowp float;\nvoid main() {}\n".to_owned());

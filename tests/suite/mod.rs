@@ -1,6 +1,7 @@
 //! Contains one module for each property that could be violated.
 
 mod any_input;
+mod backends;
 mod beside_engine_buffers;
 mod binding_errors;
 mod blending;
@@ -46,7 +47,7 @@ mod mirrored_views;
 mod never_stale;
 mod omni;
 mod omni_input;
-mod other_backends;
+
 mod out_of_range;
 mod own_layout;
 mod pass_state;
@@ -64,7 +65,6 @@ mod scene;
 mod self_shadow;
 mod shader_validation;
 mod slice_report;
-mod spirv;
 mod spot;
 mod spot_input;
 mod stability;

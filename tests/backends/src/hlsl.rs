@@ -9,13 +9,13 @@ use naga::back::hlsl::{
 
 pub use naga::back::hlsl::ShaderModel;
 
-use crate::{Pipeline, Resource, WriteError};
+use crate::{Pipeline, Resource, Text, WriteError};
 
 /// Returns the HLSL of every stage.
 ///
 /// # Errors
 /// Returns an error where the writer refuses the shader.
-pub fn write(pipeline: &Pipeline, model: ShaderModel) -> Result<Vec<String>, WriteError> {
+pub fn write(pipeline: &Pipeline, model: ShaderModel) -> Result<Vec<Text>, WriteError> {
     let options = options(pipeline, model);
     let mut texts = Vec::new();
     for stage in pipeline.stages()? {
@@ -36,9 +36,12 @@ pub fn write(pipeline: &Pipeline, model: ShaderModel) -> Result<Vec<String>, Wri
             .write(&stage.module, &stage.info, fragment.as_ref())
             .map_err(|error| WriteError::refused(stage.entry, &error))?;
         for name in reflection.entry_point_names {
-            name.map_err(|error| WriteError::refused(stage.entry, &error))?;
+            texts.push(Text {
+                stage: stage.stage,
+                entry: name.map_err(|error| WriteError::refused(stage.entry, &error))?,
+                source: text.clone(),
+            });
         }
-        texts.push(text);
     }
     Ok(texts)
 }

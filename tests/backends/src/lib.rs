@@ -15,9 +15,10 @@ pub mod spirv;
 
 use std::fmt::Display;
 
+pub use naga::ShaderStage;
 use naga::back::pipeline_constants::process_overrides;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
-use naga::{Module, ShaderStage, TypeInner};
+use naga::{Module, TypeInner};
 
 /// States why a shader could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -55,6 +56,17 @@ pub struct Pipeline {
     info: ModuleInfo,
     vertex: String,
     fragment: Option<String>,
+}
+
+/// Is what a backend's compiler is given for a stage.
+#[derive(Clone, Debug)]
+pub struct Text {
+    /// Is the stage.
+    pub stage: ShaderStage,
+    /// Is the name of the entry point in the text.
+    pub entry: String,
+    /// Is the shader.
+    pub source: String,
 }
 
 /// Is a module that is reduced to one entry point, as backends write it.

@@ -9,7 +9,7 @@ use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 use naga::{Binding, ShaderStage, TypeInner, VectorSize};
 use wgpu::VertexFormat;
 
-use crate::{Pipeline, Resource, Stage, WriteError};
+use crate::{Pipeline, Resource, Stage, Text, WriteError};
 
 /// Is the number of buffer slots; vertex buffers take the last of them.
 const BUFFERS: u32 = 31;
@@ -18,14 +18,16 @@ const BUFFERS: u32 = 31;
 ///
 /// # Errors
 /// Returns an error where the writer refuses the shader.
-pub fn write(pipeline: &Pipeline, version: (u8, u8)) -> Result<Vec<String>, WriteError> {
-    let stages = pipeline.stages()?;
-    let texts = stages.iter().map(|stage| {
-        let resources = resources(pipeline, stage);
+pub fn write(pipeline: &Pipeline, version: (u8, u8)) -> Result<Vec<Text>, WriteError> {
+    let mut texts = Vec::new();
+    for stage in pipeline.stages()? {
         let options = Options {
             lang_version: version,
             fake_missing_bindings: false,
-            per_entry_point_map: EntryPointResourceMap::from([(stage.entry.to_owned(), resources)]),
+            per_entry_point_map: EntryPointResourceMap::from([(
+                stage.entry.to_owned(),
+                resources(pipeline, &stage),
+            )]),
             bounds_check_policies: BoundsCheckPolicies {
                 index: BoundsCheckPolicy::Restrict,
                 buffer: BoundsCheckPolicy::Restrict,
@@ -38,17 +40,20 @@ pub fn write(pipeline: &Pipeline, version: (u8, u8)) -> Result<Vec<String>, Writ
             entry_point: Some((stage.stage, stage.entry.to_owned())),
             allow_and_force_point_size: false,
             vertex_pulling_transform: true,
-            vertex_buffer_mappings: vec![vertex_buffer(stage)],
+            vertex_buffer_mappings: vec![vertex_buffer(&stage)],
             ..PipelineOptions::default()
         };
         let (text, info) = write_string(&stage.module, &stage.info, &options, &pipeline_options)
             .map_err(|error| WriteError::refused(stage.entry, &error))?;
         for name in info.entry_point_names {
-            name.map_err(|error| WriteError::refused(stage.entry, &error))?;
+            texts.push(Text {
+                stage: stage.stage,
+                entry: name.map_err(|error| WriteError::refused(stage.entry, &error))?,
+                source: text.clone(),
+            });
         }
-        Ok(text)
-    });
-    texts.collect()
+    }
+    Ok(texts)
 }
 
 /// Returns the slots of the pipeline's layout, which every binding has in every stage.
@@ -85,7 +90,10 @@ fn vertex_buffer(stage: &Stage<'_>) -> VertexBufferMapping {
             return None;
         };
         let format = match stage.module.types[argument.ty].inner {
-            TypeInner::Vector { size, .. } if size == VectorSize::Tri => VertexFormat::Float32x3,
+            TypeInner::Vector {
+                size: VectorSize::Tri,
+                ..
+            } => VertexFormat::Float32x3,
             _ => VertexFormat::Float32x4,
         };
         Some(AttributeMapping {

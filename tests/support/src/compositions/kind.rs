@@ -123,7 +123,7 @@ fn emitted(gpu: &Gpu, lights: &[(&str, &ShadowMaps)]) -> Result<String, Box<dyn 
 
 /// Owns the maps of a light.
 enum Light {
-    Sun(DirectionalShadow),
+    Sun(Box<DirectionalShadow>),
     Spot(SpotShadow),
     Point(OmniShadow),
     Spots(SpotShadowPool),
@@ -155,8 +155,8 @@ impl Light {
             ..Default::default()
         };
         Ok(match kind {
-            Kind::Sun(cascades) => Self::Sun(sun(cascades, 0.0)?),
-            Kind::Blended(cascades) => Self::Sun(sun(cascades, 0.1)?),
+            Kind::Sun(cascades) => Self::Sun(Box::new(sun(cascades, 0.0)?)),
+            Kind::Blended(cascades) => Self::Sun(Box::new(sun(cascades, 0.1)?)),
             Kind::Spot { fade } => {
                 let descriptor = SpotShadowDescriptor {
                     map_size,
