@@ -1,9 +1,9 @@
-//! Measures how the cost of shadows grows with casters, lights, cascades, map size, taps and motion, and compares it
-//! with the bare minimum.
+//! Measures how the cost of shadows grows with casters, lights, cascades, map size, taps and
+//! motion, and compares it with the bare minimum.
 //!
-//! Run it with `cargo bench --bench cost`. CPU times are those of `ShadowScene::frame` and `record` together, with the
-//! allocations made; device times are ratios, run by run, so that they mean the same on every machine. Each table ends
-//! with the exponents of its growth.
+//! Run it with `cargo bench --bench cost`. CPU times are those of `ShadowScene::frame` and `record`
+//! together, with the allocations made; device times are ratios, run by run, so that they mean the
+//! same on every machine. Each table ends with the exponents of its growth.
 //!
 //! `growth/mod.rs` lists its parts.
 

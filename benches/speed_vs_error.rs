@@ -1,12 +1,13 @@
-//! Measures cost against error, and compares it with the shadow mapping of the tutorial at learnopengl.com (here called
-//! the textbook) in the same run.
+//! Measures cost against error, and compares it with the shadow mapping of the tutorial at
+//! learnopengl.com (here called the textbook) in the same run.
 //!
-//! `cargo bench --bench speed_vs_error` measures every filter, bias, map size and coverage over all scenes; `cargo
-//! bench --bench speed_vs_error -- --quick` measures a subset. Tables go to standard output; every number as CSV, and
-//! one chart and one image per scene, go to `target/speed_vs_error`. Errors are those against rays cast in double
-//! precision through the pixels of a camera. Times are multiples of the textbook's, measured right before: on a
-//! software rasterizer no other time is meaningful. The run fails where the library's default, or another of the
-//! configurations it recommends, is not on the Pareto front of work per frame against rmse.
+//! `cargo bench --bench speed_vs_error` measures every filter, bias, map size and coverage over all
+//! scenes; `cargo bench --bench speed_vs_error -- --quick` measures a subset. Tables go to standard
+//! output; every number as CSV, and one chart and one image per scene, go to
+//! `target/speed_vs_error`. Errors are those against rays cast in double precision through the
+//! pixels of a camera. Times are multiples of the textbook's, measured right before: on a software
+//! rasterizer no other time is meaningful. The run fails where the library's default, or another of
+//! the configurations it recommends, is not on the Pareto front of work per frame against rmse.
 //!
 //! `tests/support/src/measure/mod.rs` lists its parts.
 
@@ -36,18 +37,20 @@ const REPEATS: u32 = 2;
 /// Measures the cost of shadows against their error, and compares both with the textbook's.
 #[derive(Parser)]
 struct Arguments {
-    /// Measures fewer configurations, pixels and repetitions: two minutes instead of ten to fifteen on a software
-    /// rasterizer.
+    /// Measures fewer configurations, pixels and repetitions: two minutes instead of ten to fifteen
+    /// on a software rasterizer.
     #[arg(long)]
     quick: bool,
     /// Measures only these scenes. (All others are left out of the means as well.)
     #[arg(long = "scene", value_name = "NAME")]
     scenes: Vec<String>,
-    /// Sets the texels per side of a sun's map; spot lights and faces of point lights have half of that.
+    /// Sets the texels per side of a sun's map; spot lights and faces of point lights have half of
+    /// that.
     #[arg(long, value_delimiter = ',', default_values_t = [512, 1024, 2048, 4096])]
     map_sizes: Vec<u32>,
-    /// Sets the number of timed runs, each next to one of the textbook's, of what is on a scene's front, of the
-    /// library's presets and of the textbook; everything else has 2. The default is 30, or 2 with --quick.
+    /// Sets the number of timed runs, each next to one of the textbook's, of what is on a scene's
+    /// front, of the library's presets and of the textbook; everything else has 2. The default is
+    /// 30, or 2 with --quick.
     #[arg(long)]
     repeats: Option<u32>,
     /// Sets the width of the images in pixels, 16:9. The default is 480, or 256 with --quick.
@@ -142,7 +145,8 @@ fn judge_presets(entries: &[Overall]) -> Result<String, String> {
     Ok(sentences?.join("\n      "))
 }
 
-/// Measures everything about one scene: errors and counts of all configurations, and the times of those that matter.
+/// Measures everything about one scene: errors and counts of all configurations, and the times of
+/// those that matter.
 fn measure_scene(
     prober: &mut Prober<'_>,
     scene: &Scene,
@@ -211,7 +215,7 @@ fn chosen_scenes(names: &[String]) -> Result<Vec<Scene>, String> {
     Ok(scenes)
 }
 
-const COST_WORDS: &str = "texels cleared + texture instructions of 1920×1080 pixels";
+const COST_WORDS: &str = "texels cleared + lookup cycles of 1920×1080 pixels (RDNA 2)";
 
 fn chart_of_scene(arguments: &Arguments, samples: &[Sample]) -> Result<(), Box<dyn Error>> {
     let Some(first) = samples.first() else {

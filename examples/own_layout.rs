@@ -1,8 +1,9 @@
-//! Shows an engine with its own bind groups: maps, uniform buffers and one sampler under its own names, and of the
-//! library only the WGSL modules, called with these as arguments.
+//! Shows an engine with its own bind groups: maps, uniform buffers and one sampler under its own
+//! names, and of the library only the WGSL modules, called with these as arguments.
 //!
-//! `cargo run --example own_layout` draws a floor, a box and a ball under a sun and a point light into
-//! `target/own_layout.png`. The parts to read are [`layout`], [`run`] and `own_layout.wgsl`; the rest is the scene.
+//! `cargo run --example own_layout` draws a floor, a box and a ball under a sun and a point light
+//! into `target/own_layout.png`. The parts to read are [`layout`], [`run`] and `own_layout.wgsl`;
+//! the rest is the scene.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -61,7 +62,8 @@ fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
     let mut sun = DirectionalShadow::new(&gpu.device, &Default::default())?;
     let mut lamp = OmniShadow::new(&gpu.device, &Default::default())?;
 
-    // This creates the library's WGSL, the engine's bindings and functions behind it, and a group with what they name.
+    // This creates the library's WGSL, the engine's bindings and functions behind it, and a group
+    // with what they name.
     let modules = shader::compose(&["bias_plane", "filter_tent3", "cube_face", "normal"])?;
     let layout = layout(&gpu.device);
     let sampler = gpu.device.create_sampler(&Default::default());
@@ -139,8 +141,8 @@ fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Creates the layout of the engine's own bind group: a sampler, then map and uniforms of the sun, then those of the
-/// point light.
+/// Creates the layout of the engine's own bind group: a sampler, then map and uniforms of the sun,
+/// then those of the point light.
 fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     let texture = wgpu::BindingType::Texture {
         sample_type: wgpu::TextureSampleType::Depth,

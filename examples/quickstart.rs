@@ -1,8 +1,9 @@
-//! Draws three cubes, a floor and a sun: everything that an engine does for its shadows, and a small engine to do it
-//! in.
+//! Draws three cubes, a floor and a sun: everything that an engine does for its shadows, and a
+//! small engine to do it in.
 //!
-//! `cargo run --example quickstart [PICTURE.png]` draws `target/quickstart.png`, or the file named. The parts to copy
-//! are the function `draw` and the call of `shadow_sun` in the shader; what follows `draw` stands for your own engine.
+//! `cargo run --example quickstart [PICTURE.png]` draws `target/quickstart.png`, or the file named.
+//! The parts to copy are the function `draw` and the call of `shadow_sun` in the shader; what
+//! follows `draw` stands for your own engine.
 
 use std::{error::Error, path::Path, process::ExitCode};
 
@@ -16,7 +17,8 @@ use wgpu_shadows::{
     caster::MeshCasterDescriptor, caster::MeshIndices,
 };
 
-/// Is the engine's own shader. The library's WGSL precedes it and defines the two functions that begin with `shadow_`.
+/// Is the engine's own shader. The library's WGSL precedes it and defines the two functions that
+/// begin with `shadow_`.
 const SCENE_WGSL: &str = "
 struct Frame { clip_from_render: mat4x4<f32>, eye: vec4<f32>, toward_light: vec4<f32> }
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -67,8 +69,8 @@ fn draw(engine: &Engine, path: &Path) -> Result<(), Box<dyn Error>> {
     let unit_cube = Aabb::new(Vec3::NEG_ONE, Vec3::ONE);
     let [floor, cubes @ ..] = &engine.render_from_cube;
 
-    // At load time: create the casters, the light, and the bind group and WGSL by which shaders sample it. The scene is
-    // reused as well, for all lights and all frames.
+    // At load time: create the casters, the light, and the bind group and WGSL by which shaders
+    // sample it. The scene is reused as well, for all lights and all frames.
     let pipeline = CasterPipeline::new(device, &CasterPipelineDescriptor::default())?;
     let caster = |render_from_model: &Mat4| {
         MeshCaster::new(
@@ -94,7 +96,8 @@ fn draw(engine: &Engine, path: &Path) -> Result<(), Box<dyn Error>> {
         },
     )?;
 
-    // In every frame: state where the camera is, what casts, and what only receives; then record each light.
+    // In every frame: state where the camera is, what casts, and what only receives; then record
+    // each light.
     let casters: Vec<&dyn ShadowCaster> = cubes.iter().map(|cube| cube as _).collect();
     let camera = CameraView::new(engine.view_from_render, engine.clip_from_view);
     let frame = scene.frame(&ShadowFrameDescriptor {
@@ -107,11 +110,13 @@ fn draw(engine: &Engine, path: &Path) -> Result<(), Box<dyn Error>> {
     let mut encoder = device.create_command_encoder(&Default::default());
     sun.record(&mut encoder, &frame, &light)?;
 
-    // The engine's own pass follows in the same encoder; it sets the library's bind group at the index that it chose.
+    // The engine's own pass follows in the same encoder; it sets the library's bind group at the
+    // index that it chose.
     engine.paint(encoder, &bindings, path)
 }
 
-// From here on nothing concerns shadows but `bindings.wgsl()`, `bindings.layout()` and `bindings.bind_group()`.
+// From here on nothing concerns shadows but `bindings.wgsl()`, `bindings.layout()` and
+// `bindings.bind_group()`.
 
 const SIZE: wgpu::Extent3d = wgpu::Extent3d {
     width: 960,
@@ -121,7 +126,8 @@ const SIZE: wgpu::Extent3d = wgpu::Extent3d {
 const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// Holds a graphics device, and a scene of one mesh that is drawn four times: a floor and three cubes.
+/// Holds a graphics device, and a scene of one mesh that is drawn four times: a floor and three
+/// cubes.
 struct Engine {
     device: wgpu::Device,
     queue: wgpu::Queue,
@@ -354,7 +360,8 @@ fn buffer<T: bytemuck::NoUninit>(
     })
 }
 
-/// Returns two triangles for each side of the cube from -1 to 1, counter-clockwise as seen from outside.
+/// Returns two triangles for each side of the cube from -1 to 1, counter-clockwise as seen from
+/// outside.
 fn cube_corners() -> Vec<Vec3> {
     let sides = [
         Vec3::X,

@@ -1,4 +1,5 @@
-//! Validates the values that all kinds of lights take. Each failure names the field, the rule and the value.
+//! Validates the values that all kinds of lights take. Each failure names the field, the rule and
+//! the value.
 
 use std::fmt::Display;
 

@@ -132,7 +132,7 @@
 //! it was drawn, and the bias allows for that rounding. The map is drawn again where the rounding exceeds both twice that of a new
 //! map and 1/64 of a texel.
 //!
-//! [`hard_cases`] lists scenes and inputs that break shadow maps, with what the crate promises for each and what was measured.
+//! [`troubleshooting`] tells what faults look like, what causes them and what to do. [`hard_cases`] lists scenes and inputs that break shadow maps, with what the crate promises for each and what was measured.
 //!
 //! # Own bind groups
 //!
@@ -197,7 +197,7 @@
 //!
 //! - of [`ShadowBindings::wgsl`]: `shadow_NAME`, `shadow_view_NAME`, `shadow_map_NAME` and `shadow_views_NAME` for each light, and
 //!   `shadow_geometric_normal`;
-//! - of [`shader::MODULES`]: the names of the modules `view`, `cube_face`, `normal`, `texels_by_samples`, `bias_*`, and `filter_*`
+//! - of [`shader::MODULES`]: the names of the modules `view`, `cube_face`, `normal`, `texels_by_offsets`, `texels_by_samples`, `bias_*`, and `filter_*`
 //!   except `filter_direction`; of their functions `shadow_view_holds`, `shadow_limited_by_depth`,
 //!   `shadow_limited_by_distance`, `shadow_cube_face`, `shadow_geometric_normal`,
 //!   `shadow_receiver_NAME_directional` and `shadow_receiver_NAME_local` of a module `bias_NAME`, and
@@ -263,6 +263,10 @@ pub mod report {
 #[cfg(doc)]
 #[doc = include_str!("../doc/hard_cases.md")]
 pub mod hard_cases {}
+
+#[cfg(doc)]
+#[doc = include_str!("../doc/troubleshooting.md")]
+pub mod troubleshooting {}
 
 /// Compiles the code of the README.
 #[cfg(doctest)]

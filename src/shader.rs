@@ -7,7 +7,8 @@
 //! An engine with its own bind groups composes `["bias_plane", "filter_tent3"]` and calls `shadow_filter_tent3(map,
 //! map_sampler, shadow_receiver_plane_directional(view, position, normal))`; `shadow_limited_by_depth(view, position, visibility)`
 //! then ends shadows at the cameras' `max_distance`. On devices whose shaders cannot gather (OpenGL ES 3.0, WebGL 2) it
-//! names `"texels_by_samples"` beside them and binds the maps as `texture_2d_array<f32>`.
+//! names `"texels_by_samples"` beside them and binds the maps as `texture_2d_array<f32>`. On every other backend than
+//! OpenGL it may name `"texels_by_offsets"`, which makes the filters cheaper.
 
 use crate::error::BindingsError;
 
@@ -60,6 +61,10 @@ pub(crate) const CASCADE_TINT: ShaderModule = module!(
 
 pub(crate) const GATHER_PROBE: ShaderModule =
     module!("gather_probe", "pass/gather_probe.wgsl", ["fullscreen"]);
+const TEXELS_BY_OFFSETS: ShaderModule = ShaderModule {
+    replaces: Some("texels"),
+    ..module!("texels_by_offsets", "texels_by_offsets.wgsl", ["view"])
+};
 const TEXELS_BY_SAMPLES: ShaderModule = ShaderModule {
     replaces: Some("texels"),
     ..module!("texels_by_samples", "texels_by_samples.wgsl", ["view"])
@@ -82,6 +87,7 @@ pub const MODULES: &[ShaderModule] = &[
     ),
     module!("bias_manual", "bias_manual.wgsl", ["view", "place"]),
     module!("texels", "texels.wgsl", ["view"]),
+    TEXELS_BY_OFFSETS,
     TEXELS_BY_SAMPLES,
     module!("gather", "gather.wgsl", ["view", "texels"]),
     module!(
@@ -139,7 +145,8 @@ pub const MODULES: &[ShaderModule] = &[
 ];
 
 /// Returns the texts of the named modules and of all modules that they require, each once, in the order of the table.
-/// A module that replaces another is included instead of the other.
+/// A module that replaces another is included instead of the other; of two that replace the same one, the later in the
+/// table is.
 ///
 /// # Errors
 /// Returns [`BindingsError::UnknownModule`] for a name that is not in [`MODULES`].
@@ -164,9 +171,14 @@ pub fn compose(names: &[&str]) -> Result<String, BindingsError> {
             .filter(|(_, wanted)| *wanted)
             .map(|(module, _)| module)
     };
-    let is_replaced = |name| chosen().any(|other| other.replaces == Some(name));
+    let is_replaced = |module: &ShaderModule| {
+        let name = module.replaces.unwrap_or(module.name);
+        let mut last_first = chosen().rev();
+        let last = last_first.find(|other| other.replaces == Some(name));
+        last.is_some_and(|last| last.name != module.name)
+    };
     Ok(chosen()
-        .filter(|module| !is_replaced(module.name))
+        .filter(|module| !is_replaced(module))
         .map(|module| module.source)
         .collect())
 }

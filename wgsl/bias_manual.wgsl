@@ -1,10 +1,10 @@
-// Applies the manual bias of the tutorial at learnopengl.com: max(slope * (1 - n · l), constant), in world units toward
-// the light.
+// Applies the manual bias of the tutorial at learnopengl.com: max(slope * (1 - n · l), constant),
+// in world units toward the light.
 //
 // CPU reference: src/receive/reference. Requires: view, place.
 
-// Returns the receiver at `position` in a view of a directional light, moved toward the light by the manual bias.
-// Position and normal are in render space.
+// Returns the receiver at `position` in a view of a directional light, moved toward the light by
+// the manual bias. Position and normal are in render space.
 fn shadow_receiver_manual_directional(
     view: ShadowViewUniform,
     position: vec3<f32>,
@@ -14,8 +14,8 @@ fn shadow_receiver_manual_directional(
     return shadow_manual_directional(view, view.mapping, place, shadow_light_from_render(view, normal));
 }
 
-// Returns the receiver at `position` in a view of a local light, moved toward the light by the manual bias. Position
-// and normal are in render space.
+// Returns the receiver at `position` in a view of a local light, moved toward the light by the
+// manual bias. Position and normal are in render space.
 fn shadow_receiver_manual_local(
     view: ShadowViewUniform,
     position: vec3<f32>,
@@ -25,7 +25,8 @@ fn shadow_receiver_manual_local(
     return shadow_manual_local(view, view.mapping, place, shadow_light_from_render(view, normal));
 }
 
-// Returns the receiver at a place of a directional light with a normal along the axes of light space.
+// Returns the receiver at a place of a directional light with a normal along the axes of light
+// space.
 fn shadow_manual_directional(
     view: ShadowViewUniform,
     mapping: ShadowMapping,
@@ -37,8 +38,8 @@ fn shadow_manual_directional(
     return shadow_receiver(view, mapping, place, place.texel_from_middle, depth, vec2<f32>(0.0));
 }
 
-// Returns the receiver at a place of a local light with a normal along the axes of light space. A receiver that the
-// bias moves past the light is lit: its depth is set nearer than any in the map.
+// Returns the receiver at a place of a local light with a normal along the axes of light space. A
+// receiver that the bias moves past the light is lit: its depth is set nearer than any in the map.
 fn shadow_manual_local(
     view: ShadowViewUniform,
     mapping: ShadowMapping,

@@ -1,14 +1,16 @@
-// Moves the receiver along its normal by the least distance that prevents self-shadowing of a plane under any kernel.
+// Moves the receiver along its normal by the least distance that prevents self-shadowing of a plane
+// under any kernel.
 //
-// That distance is d = K * s * (|nx| + |ny|), with K the kernel's reach per axis in texels and the lateral error, s the
-// world size of a texel and n the normal in light space. In a perspective view the texel grows with the distance of the
-// offset point itself, which gives d / (1 - d'), with d' the offset per unit of view depth times the normal's component
-// away from the light. The whole kernel is compared with one reference depth.
+// That distance is d = K * s * (|nx| + |ny|), with K the kernel's reach per axis in texels and the
+// lateral error, s the world size of a texel and n the normal in light space. In a perspective view
+// the texel grows with the distance of the offset point itself, which gives d / (1 - d'), with d'
+// the offset per unit of view depth times the normal's component away from the light. The whole
+// kernel is compared with one reference depth.
 //
 // CPU reference: src/receive/reference. Requires: view, place, rounding.
 
-// Returns the receiver at `position` in a view of a directional light, moved along its geometric normal. Position and
-// normal are in render space.
+// Returns the receiver at `position` in a view of a directional light, moved along its geometric
+// normal. Position and normal are in render space.
 fn shadow_receiver_normal_offset_directional(
     view: ShadowViewUniform,
     position: vec3<f32>,
@@ -18,8 +20,8 @@ fn shadow_receiver_normal_offset_directional(
     return shadow_normal_offset_directional(view, view.mapping, place, shadow_light_from_render(view, normal));
 }
 
-// Returns the receiver at `position` in a view of a local light, moved along its geometric normal. Position and normal
-// are in render space.
+// Returns the receiver at `position` in a view of a local light, moved along its geometric normal.
+// Position and normal are in render space.
 fn shadow_receiver_normal_offset_local(
     view: ShadowViewUniform,
     position: vec3<f32>,
@@ -29,7 +31,8 @@ fn shadow_receiver_normal_offset_local(
     return shadow_normal_offset_local(view, view.mapping, place, shadow_light_from_render(view, normal));
 }
 
-// Returns the receiver at a place of a directional light with a normal along the axes of light space.
+// Returns the receiver at a place of a directional light with a normal along the axes of light
+// space.
 fn shadow_normal_offset_directional(
     view: ShadowViewUniform,
     mapping: ShadowMapping,
@@ -43,8 +46,9 @@ fn shadow_normal_offset_directional(
     return shadow_receiver(view, mapping, place, texel, depth, vec2<f32>(0.0));
 }
 
-// Returns the receiver at a place of a local light with a normal along the axes of light space. Its depth is that of
-// its plane, moved by the offset, at the texel to which the offset moves it; see `shadow_plane_local`.
+// Returns the receiver at a place of a local light with a normal along the axes of light space. Its
+// depth is that of its plane, moved by the offset, at the texel to which the offset moves it; see
+// `shadow_plane_local`.
 fn shadow_normal_offset_local(
     view: ShadowViewUniform,
     mapping: ShadowMapping,
@@ -59,8 +63,8 @@ fn shadow_normal_offset_local(
     let growth = per_w * max(-normal.z, 0.0);
     // Up to one half, 1 / (1 - growth) is at most 1 + 2 growth.
     let offset = per_w * -place.light.z * (1.0 + 2.0 * growth);
-    // Where the kernel reaches past the horizon of the surface, no offset prevents self-shadowing. Such a position is
-    // lit: its depth is set nearer than any in the map.
+    // Where the kernel reaches past the horizon of the surface, no offset prevents self-shadowing.
+    // Such a position is lit: its depth is set nearer than any in the map.
     let hopeless = !((growth < 0.5) & (offset + rounding < abs(height)));
     let moved = height + select(-rounding, rounding, height < 0.0) + offset;
     let inverse_height = 1.0 / moved;

@@ -1,20 +1,21 @@
-// Derives the bias from the receiver's tangent plane: each texel of a kernel is compared with the depth of the plane at
-// that texel.
+// Derives the bias from the receiver's tangent plane: each texel of a kernel is compared with the
+// depth of the plane at that texel.
 //
-// Over a plane, ndc depth is affine in map coordinates, for orthographic and perspective views alike, so one gradient
-// describes the plane. Filters clamp the extrapolated depth so that it never lies farther from the light than the
-// receiver (Dou, Yan, Kerzner, Dai, Wyman 2014, "Adaptive Depth Bias for Shadow Maps"). Two errors remain. Rounding is
-// covered by `lateral_error` texels along the plane and `depth_error` in depth; facets finer than a texel are covered
-// by an offset of `offset_texels` along the normal.
+// Over a plane, ndc depth is affine in map coordinates, for orthographic and perspective views
+// alike, so one gradient describes the plane. Filters clamp the extrapolated depth so that it never
+// lies farther from the light than the receiver (Dou, Yan, Kerzner, Dai, Wyman 2014, "Adaptive
+// Depth Bias for Shadow Maps"). Two errors remain. Rounding is covered by `lateral_error` texels
+// along the plane and `depth_error` in depth; facets finer than a texel are covered by an offset of
+// `offset_texels` along the normal.
 //
 // CPU reference: src/receive/reference. Requires: view, place, rounding.
 
-// Is the steepest gradient, in depth per texel. Steeper planes cross the whole depth range within a fraction of a
-// texel; the limit excludes infinity.
+// Is the steepest gradient, in depth per texel. Steeper planes cross the whole depth range within a
+// fraction of a texel; the limit excludes infinity.
 const SHADOW_MAX_GRADIENT: f32 = 1e4;
 
-// Returns the receiver at `position` in a view of a directional light, with the gradient of its tangent plane. Position
-// and normal are in render space.
+// Returns the receiver at `position` in a view of a directional light, with the gradient of its
+// tangent plane. Position and normal are in render space.
 fn shadow_receiver_plane_directional(
     view: ShadowViewUniform,
     position: vec3<f32>,
@@ -24,8 +25,8 @@ fn shadow_receiver_plane_directional(
     return shadow_plane_directional(view, view.mapping, place, shadow_light_from_render(view, normal));
 }
 
-// Returns the receiver at `position` in a view of a local light, with the gradient of its tangent plane. Position and
-// normal are in render space.
+// Returns the receiver at `position` in a view of a local light, with the gradient of its tangent
+// plane. Position and normal are in render space.
 fn shadow_receiver_plane_local(
     view: ShadowViewUniform,
     position: vec3<f32>,
@@ -35,10 +36,11 @@ fn shadow_receiver_plane_local(
     return shadow_plane_local(view, view.mapping, place, shadow_light_from_render(view, normal));
 }
 
-// Returns the receiver at a place of a directional light with a normal along the axes of light space.
+// Returns the receiver at a place of a directional light with a normal along the axes of light
+// space.
 //
-// The plane through the receiver has the height z = -(nx x + ny y) / nz toward the light; depths are heights times
-// `depth_scale`. The receiver is moved along its normal, across the map as well.
+// The plane through the receiver has the height z = -(nx x + ny y) / nz toward the light; depths
+// are heights times `depth_scale`. The receiver is moved along its normal, across the map as well.
 fn shadow_plane_directional(
     view: ShadowViewUniform,
     mapping: ShadowMapping,
@@ -58,9 +60,10 @@ fn shadow_plane_directional(
 
 // Returns the receiver at a place of a local light with a normal along the axes of light space.
 //
-// With h = n · p, the position being relative to the light, the plane meets the direction of tangents (x, y) where
-// near / w = near (nx x + ny y - nz) / h. Moving the plane along its normal only changes h. The receiver is moved across
-// the map by the tangents of the same offset, and its depth is that of the moved plane there.
+// With h = n · p, the position being relative to the light, the plane meets the direction of
+// tangents (x, y) where near / w = near (nx x + ny y - nz) / h. Moving the plane along its normal
+// only changes h. The receiver is moved across the map by the tangents of the same offset, and its
+// depth is that of the moved plane there.
 fn shadow_plane_local(
     view: ShadowViewUniform,
     mapping: ShadowMapping,
@@ -71,8 +74,8 @@ fn shadow_plane_local(
     let rounding = shadow_local_rounding(view, place, height);
     let rise = normal.xy * mapping.texel_size;
     let wanted = view.offset_texels * -place.light.z * (abs(rise.x) + abs(rise.y));
-    // The offset never reaches past the light: under the widest cones a texel is larger than the light's height above
-    // the surface.
+    // The offset never reaches past the light: under the widest cones a texel is larger than the
+    // light's height above the surface.
     let offset = min(wanted, 0.5 * (abs(height) - rounding));
     let moved = height + select(-rounding, rounding, height < 0.0) + offset;
     // A plane through the light has no gradient, nor does one whose normal is zero.

@@ -1,4 +1,5 @@
-// Describes the depth render that a caster is drawn into. This module precedes the vertex stage of every caster.
+// Describes the depth render that a caster is drawn into. This module precedes the vertex stage of
+// every caster.
 //
 // CPU counterpart: src/cast/view_uniform.rs.
 

@@ -1,5 +1,5 @@
-// Selects the face of the cube around a point light, and exchanges coordinates so that they are along the axes of that
-// face. CPU counterpart: src/light/omni.rs.
+// Selects the face of the cube around a point light, and exchanges coordinates so that they are
+// along the axes of that face. CPU counterpart: src/light/omni.rs.
 
 // Describes a face of the cube.
 struct ShadowFace {
@@ -12,8 +12,9 @@ struct ShadowFace {
     signs: vec3<f32>,
 }
 
-// Returns the face on which a position lies, given the vector from the light to it. Every vector has exactly one face.
-// Where components are equal, zero included, x is taken before y and y before z.
+// Returns the face on which a position lies, given the vector from the light to it. Every vector
+// has exactly one face. Where components are equal, zero included, x is taken before y and y before
+// z.
 fn shadow_face(from_light: vec3<f32>) -> ShadowFace {
     let reach = abs(from_light);
     let along_x = (reach.x >= reach.y) & (reach.x >= reach.z);
@@ -21,8 +22,9 @@ fn shadow_face(from_light: vec3<f32>) -> ShadowFace {
     let forward = select(select(from_light.z, from_light.y, along_y), from_light.x, along_x);
     let is_negative = forward < 0.0;
     let index = select(select(4u, 2u, along_y), 0u, along_x) + select(0u, 1u, is_negative);
-    // Facing +x, right is z and down is -y; facing +y, right is x and down is -z; facing +z, right is -x and down is -y.
-    // On the opposite face the sign of what is horizontal changes, except that facing -y, right is x and down is z.
+    // Facing +x, right is z and down is -y; facing +y, right is x and down is -z; facing +z, right
+    // is -x and down is -y. On the opposite face the sign of what is horizontal changes, except
+    // that facing -y, right is x and down is z.
     let side = select(-1.0, 1.0, is_negative);
     let right = select(select(side, -side, along_x), 1.0, along_y);
     let signs = vec3<f32>(right, select(-1.0, side, along_y), side);

@@ -1,5 +1,5 @@
-// Compares 2x2 gathered texels and weights the results bilinearly in full precision. The reach is one texel.
-// CPU reference: src/receive/reference. Requires: view, texels, gather.
+// Compares 2x2 gathered texels and weights the results bilinearly in full precision. The reach is
+// one texel. CPU reference: src/receive/reference. Requires: view, texels, gather.
 
 // Returns the visibility of the light, in [0, 1].
 fn shadow_filter_bilinear(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver) -> f32 {

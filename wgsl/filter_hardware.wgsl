@@ -1,6 +1,6 @@
-// Uses the sampler's own 2x2 comparison, which is bilinearly weighted; its weights have as few as four bits. Four
-// texels share one reference depth, so the gradient is not used. The reach is one texel. CPU reference:
-// src/receive/reference. Requires: view.
+// Uses the sampler's own 2x2 comparison, which is bilinearly weighted; its weights have as few as
+// four bits. Four texels share one reference depth, so the gradient is not used. The reach is one
+// texel. CPU reference: src/receive/reference. Requires: view.
 
 // Returns the visibility of the light, in [0, 1].
 fn shadow_filter_hardware(

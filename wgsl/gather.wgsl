@@ -1,5 +1,5 @@
-// Compares raw depths of a map with the receiver's reference depths at their texels. These are never farther from the
-// light than the receiver itself.
+// Compares raw depths of a map with the receiver's reference depths at their texels. These are
+// never farther from the light than the receiver itself.
 //
 // CPU reference: src/receive/reference. Requires: view, texels.
 
@@ -21,14 +21,16 @@ fn shadow_kernel(receiver: ShadowReceiver) -> ShadowKernel {
     return ShadowKernel(base, fraction, receiver.depth - dot(receiver.gradient, fraction));
 }
 
-// Returns the depths of the receiver's plane in rows `row` and `row + 1` from a kernel's base, in the base's column.
+// Returns the depths of the receiver's plane in rows `row` and `row + 1` from a kernel's base, in
+// the base's column.
 fn shadow_kernel_rows(receiver: ShadowReceiver, kernel: ShadowKernel, row: f32) -> vec2<f32> {
     return kernel.depth + receiver.gradient.y * vec2<f32>(row, row + 1.0);
 }
 
-// Compares a block of 2x2 texels, whose left column is `column` columns from the kernel's base. `rows` is the depth of
-// the plane in its two rows, in the base's column, and `weights` the weight of its two columns. Returns for each row
-// `before`, to which the weights of the lit texels are added.
+// Compares a block of 2x2 texels, whose left column is `column` columns from the kernel's base.
+// `rows` is the depth of the plane in its two rows, in the base's column, and `weights` the weight
+// of its two columns. Returns for each row `before`, to which the weights of the lit texels are
+// added.
 fn shadow_lit_rows(
     receiver: ShadowReceiver,
     rows: vec2<f32>,
@@ -47,13 +49,14 @@ fn shadow_lit_rows(
     return vec2<f32>(upper, lower);
 }
 
-// Returns the visibility that a kernel's weighted sum of lit texels means, with a sharper edge: the ramp is stretched
-// around one half.
+// Returns the visibility that a kernel's weighted sum of lit texels means, with a sharper edge: the
+// ramp is stretched around one half.
 fn shadow_ramped(receiver: ShadowReceiver, sum: f32) -> f32 {
     return clamp(sum * receiver.ramp.x + receiver.ramp.y, 0.0, 1.0);
 }
 
-// Returns the receiver's reference depths at the texels (first), (first + x), (first + y), (first + x + y).
+// Returns the receiver's reference depths at the texels (first), (first + x), (first + y), (first +
+// x + y).
 fn shadow_references(receiver: ShadowReceiver, first: vec2<f32>) -> vec4<f32> {
     let to_first = first + 0.5 - receiver.texel;
     let rise = dot(receiver.gradient, to_first);

@@ -1,5 +1,5 @@
-//! Measures CPU time and allocations of `frame` and `record` together, and device time, against the number of casters
-//! and lights.
+//! Measures CPU time and allocations of `frame` and `record` together, and device time, against the
+//! number of casters and lights.
 
 use glam::{DVec3, Vec3};
 use shadow_support::camera;
@@ -14,7 +14,8 @@ use super::processor;
 use super::stage::{self, Stage};
 use super::table::Growth;
 
-/// Measures CPU time and allocations of a frame against the number of casters, all of them in the map.
+/// Measures CPU time and allocations of a frame against the number of casters, all of them in the
+/// map.
 pub fn casters(stage: &Stage<'_>, most: u32) {
     let mut table = Growth::new(
         "sun, one cascade: `frame` and `record` on the CPU against casters (all drawn; nothing changed; almost all culled), and \
@@ -59,8 +60,8 @@ pub fn casters(stage: &Stage<'_>, most: u32) {
     table.print();
 }
 
-/// Measures fit and cull of four cascades before a camera that sees a corner of the crowd, and of a point light in its
-/// middle.
+/// Measures fit and cull of four cascades before a camera that sees a corner of the crowd, and of a
+/// point light in its middle.
 pub fn culling(stage: &Stage<'_>, most: u32) {
     let mut table = Growth::new(
         "`frame` and `record` on the CPU against casters: four cascades out to 60 m, drawn and kept, and a lamp of 20 m, kept",

@@ -1,4 +1,5 @@
-//! Measures device time of maps and lookups against cascades, map size and taps, and compares it with the bare minimum.
+//! Measures device time of maps and lookups against cascades, map size and taps, and compares it
+//! with the bare minimum.
 
 use glam::{DMat4, DVec3, DVec4, Vec3};
 use shadow_support::camera;
@@ -17,7 +18,8 @@ use super::crowd::{self, Crowd};
 use super::stage::{self, Stage, frame};
 use super::table::Growth;
 
-/// Measures a frame against the number of cascades, for a camera that sees to the end of the ground.
+/// Measures a frame against the number of cascades, for a camera that sees to the end of the
+/// ground.
 pub fn cascades(stage: &Stage<'_>) {
     let crowd = Crowd::new(stage.gpu, 2_000);
     let list = crowd.list();
@@ -77,7 +79,8 @@ pub fn map_sizes(stage: &Stage<'_>, largest: u32) {
     table.print();
 }
 
-/// Measures lookups against texture instructions, for a point light, the one kind that all filters suit.
+/// Measures lookups against texture instructions, for a point light, the one kind that all filters
+/// suit.
 pub fn taps(stage: &Stage<'_>) {
     let scene = lamp_scene(stage.gpu);
     let casters = SceneCasters::new(stage.gpu, &scene);
@@ -153,7 +156,8 @@ pub fn bare_minimum(stage: &Stage<'_>) {
             encoder
         });
         let view = sun.shadow.maps().views().next().expect("boxes cast");
-        // The bare pass clears to 1 and keeps the least depth: the same image with its depth reversed.
+        // The bare pass clears to 1 and keeps the least depth: the same image with its depth
+        // reversed.
         let turned = DMat4::from_cols(
             DVec4::X,
             DVec4::Y,

@@ -1,5 +1,5 @@
-//! Compares a pass for each of a point light's six faces with one pass for all, where the device draws several views at
-//! once.
+//! Compares a pass for each of a point light's six faces with one pass for all, where the device
+//! draws several views at once.
 
 use std::time::Instant;
 
@@ -20,8 +20,8 @@ use super::stage::Stage;
 /// Is the number of texels per side: few, since filling them costs the same both ways.
 const MAP_SIZE: u32 = 32;
 
-/// Prints both ways for few and many casters, with few triangles and with many. The casters lie in two and three faces,
-/// or in all of them, so that none is culled.
+/// Prints both ways for few and many casters, with few triangles and with many. The casters lie in
+/// two and three faces, or in all of them, so that none is culled.
 pub fn in_one_pass(stage: &Stage<'_>) {
     println!(
         "\npoint light: one pass for all faces beside a pass each (ratio of the times of frame, record, submission and \

@@ -12,7 +12,8 @@ use super::stage;
 /// Is the golden angle in radians: successive lights on a spiral keep their distance.
 const TURN: f64 = 2.399_963;
 
-/// Holds the shadows of many point lights, with a scene that they share and that is reused from frame to frame.
+/// Holds the shadows of many point lights, with a scene that they share and that is reused from
+/// frame to frame.
 pub struct Lamps {
     scene: ShadowScene,
     shadows: Vec<OmniShadow>,
@@ -32,8 +33,8 @@ impl Lamps {
         }
     }
 
-    /// Makes one frame for all lights, which are spread over a square of ground of half the side `half`, records it,
-    /// and returns its counts.
+    /// Makes one frame for all lights, which are spread over a square of ground of half the side
+    /// `half`, records it, and returns its counts.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,

@@ -1,7 +1,8 @@
 //! Measures what static casters save: a frame against the share of casters that move.
 //!
-//! A view whose light, fit and casters did not change keeps its map. A view of which only some casters move keeps the
-//! others in a static-caster cache, a texture of its own, where copying that costs less than drawing them.
+//! A view whose light, fit and casters did not change keeps its map. A view of which only some
+//! casters move keeps the others in a static-caster cache, a texture of its own, where copying that
+//! costs less than drawing them.
 
 use glam::Vec3;
 use wgpu_shadows::{Coverage, Filter, ShadowCaster};
@@ -39,7 +40,8 @@ trait Lit {
     }
 }
 
-/// Measures a sun and a field of point lights, while more and more of the crowd around the middle moves.
+/// Measures a sun and a field of point lights, while more and more of the crowd around the middle
+/// moves.
 pub fn moving_share(stage: &Stage<'_>) {
     measure(
         stage,
@@ -133,8 +135,8 @@ impl Lit for Lamps {
     }
 }
 
-/// Compares a frame in which one of many casters moves with the same frame drawn completely: what the static-caster
-/// cache saves, and from how many casters on.
+/// Compares a frame in which one of many casters moves with the same frame drawn completely: what
+/// the static-caster cache saves, and from how many casters on.
 pub fn static_cache(stage: &Stage<'_>) {
     let mut table = Growth::new(
         "static-caster cache: one of so many casters moves; device time as a ratio to drawing all of them, by texels per side \

@@ -67,8 +67,8 @@ impl Stage<'_> {
         }
     }
 
-    /// Measures `frame` and `record` on the CPU, in an encoder that is then dropped, for a frame that changed or for
-    /// one that did not.
+    /// Measures `frame` and `record` on the CPU, in an encoder that is then dropped, for a frame
+    /// that changed or for one that did not.
     pub fn record_effort(
         &self,
         sun: &mut Sun,

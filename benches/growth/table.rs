@@ -21,7 +21,8 @@ impl Growth {
         self.rows.push((size, figures.into()));
     }
 
-    /// Prints the rows, and under each column the exponent of its growth: 0 is constant, 1 is in proportion.
+    /// Prints the rows, and under each column the exponent of its growth: 0 is constant, 1 is in
+    /// proportion.
     pub fn print(&self) {
         println!("\n{}", self.title);
         let header: String = self
@@ -43,8 +44,8 @@ impl Growth {
         println!("{:>18}{slopes}", "log-log slope");
     }
 
-    /// Returns the slope of least squares through the logarithms, without the row of size 0; `None` where another
-    /// figure is not positive.
+    /// Returns the slope of least squares through the logarithms, without the row of size 0; `None`
+    /// where another figure is not positive.
     fn slope(&self, column: usize) -> Option<f64> {
         let places: Vec<(f64, f64)> = self
             .rows

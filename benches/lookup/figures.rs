@@ -6,10 +6,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use shadow_isa::{Compiler, Driver, Figures};
-
-use crate::compositions::Composition;
-use crate::table::{Row, Table};
+use shadow_isa::{Compiler, Driver, Figures, Row, Table};
+use shadow_support::compositions::Composition;
 
 /// Compiles `compositions` for the chips of `families`, through files in `folder`.
 pub fn of(

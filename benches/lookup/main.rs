@@ -1,12 +1,13 @@
-//! Tells what lookups cost on real instruction sets, without a GPU: Mesa's compiler for AMD chips says
-//! how many registers, instructions and cycles each comes to.
+//! Tells what lookups cost on real instruction sets, without a GPU: Mesa's compiler for AMD chips
+//! says how many registers, instructions and cycles each comes to.
 //!
-//! `cargo bench --bench lookup` prints a table, `-- --csv` all of it as CSV. `-- --check` fails where a
-//! figure has worsened by more than 3 % against `doc/lookup_cost.csv`, and `-- --update` writes that
-//! file. The figures depend on the version of the driver alone, which is that of Debian 12.
+//! `cargo bench --bench lookup` prints a table, `-- --csv` all of it as CSV. `-- --check` fails
+//! where a figure has worsened by more than 3 % against `doc/lookup_cost.csv`, and `-- --update`
+//! writes that file. The figures depend on the version of the driver alone, which is that of Debian
+//! 12.
 //!
-//! The compiler's model counts the body of a loop eightfold, so the figures of penumbrae, of filters
-//! by direction and of blending cascades compare only with each other.
+//! The compiler's model counts the body of a loop eightfold, so the figures of penumbrae, of
+//! filters by direction and of blending cascades compare only with each other.
 
 use std::error::Error;
 use std::fs;
@@ -14,16 +15,14 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
-
-use table::Table;
+use shadow_isa::Table;
 
 mod compositions;
 mod figures;
-mod table;
 
 /// Lists a chip of each instruction set that the driver's version compiles for and that WebGPU runs
-/// on: RDNA 2, RDNA 1, GCN 5 and GCN 4.
-const FAMILIES: [&str; 4] = ["NAVI21", "NAVI10", "VEGA10", "POLARIS10"];
+/// on: RDNA 2, RDNA 1, RDNA 3, GCN 5 and GCN 4.
+const FAMILIES: [&str; 5] = ["NAVI21", "NAVI10", "GFX1100", "VEGA10", "POLARIS10"];
 
 /// Tells what lookups cost on real instruction sets.
 #[derive(Parser)]
@@ -69,6 +68,7 @@ fn run(arguments: &Arguments) -> Result<ExitCode, Box<dyn Error>> {
     let table = figures::of(&compositions, &arguments.families, &folder)?;
     if arguments.csv {
         print!("{}", table.csv());
+        eprintln!("compiled by {}", table.driver);
     } else if !arguments.check {
         for family in &arguments.families {
             println!("{}", table.readable(family));
@@ -76,7 +76,7 @@ fn run(arguments: &Arguments) -> Result<ExitCode, Box<dyn Error>> {
     }
     let path = root.join("doc/lookup_cost.csv");
     if arguments.update {
-        fs::write(&path, table.csv())?;
+        fs::write(&path, format!("# {}\n{}", table.driver, table.csv()))?;
         println!("wrote {}", path.display());
     }
     if arguments.check {

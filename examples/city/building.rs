@@ -3,7 +3,8 @@
 use example_support::mesh::{Instance, Mesh};
 use wgpu_shadows::{Aabb, CasterPipeline, Revision, ShadowCaster, ShadowView};
 
-/// Is one instance in the town's buffer. wgpu's buffers and the library's pipelines are handles, and cheap to clone.
+/// Is one instance in the town's buffer. wgpu's buffers and the library's pipelines are handles,
+/// and cheap to clone.
 pub struct Building {
     vertices: wgpu::Buffer,
     vertex_count: u32,

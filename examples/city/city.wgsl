@@ -1,12 +1,13 @@
-// Contains the town's fragment stages. The text before this one defines Blinn-Phong, and the one before that
-// `shadow_sun`.
+// Contains the town's fragment stages. The text before this one defines Blinn-Phong, and the one
+// before that `shadow_sun`.
 
 // Is the width and height of the wall around a window, in metres.
 const WINDOW_CELL: vec2<f32> = vec2<f32>(2.4, 3.0);
 
 const HAZE: vec3<f32> = vec3<f32>(0.45, 0.58, 0.75);
 
-// Returns the fraction of a pixel of `width` at `place` that lies between `low` and `high` of each unit.
+// Returns the fraction of a pixel of `width` at `place` that lies between `low` and `high` of each
+// unit.
 fn covered(place: vec2<f32>, width: vec2<f32>, low: vec2<f32>, high: vec2<f32>) -> vec2<f32> {
     let start = place - 0.5 * width;
     let end = place + 0.5 * width;
@@ -43,8 +44,8 @@ fn fragment(surface: Surface) -> @location(0) vec4<f32> {
     return vec4<f32>(in_the_haze(lit_town(surface, normal), surface.position), 1.0);
 }
 
-// Writes how many texels of its map a pixel covers along its longer side, as (log2 + 8) / 16, and 0 where no map covers
-// it.
+// Writes how many texels of its map a pixel covers along its longer side, as (log2 + 8) / 16, and 0
+// where no map covers it.
 @fragment
 fn fragment_density(surface: Surface) -> @location(0) vec4<f32> {
     let across = dpdx(surface.position);

@@ -12,8 +12,8 @@ pub struct Density {
 }
 
 impl Density {
-    /// Returns the quantiles of an image of `fragment_density`, whose red channel is `(log2(texels) + 8) / 16`, or 0
-    /// where no map covers the pixel.
+    /// Returns the quantiles of an image of `fragment_density`, whose red channel is
+    /// `(log2(texels) + 8) / 16`, or 0 where no map covers the pixel.
     pub fn of(pixels: &[u8]) -> Option<Self> {
         let mut codes: Vec<u8> = pixels.iter().step_by(4).copied().collect();
         codes.retain(|code| *code > 0);

@@ -1,8 +1,10 @@
-//! Shows a town of some thousand buildings under four cascades: what a sun costs, and where its texels go.
+//! Shows a town of some thousand buildings under four cascades: what a sun costs, and where its
+//! texels go.
 //!
-//! `cargo run --release --example city -- [FOLDER] --frames N` flies through its streets and over its roofs in N
-//! images, written to `target/city` or the folder named, with a table of what each frame's shadows cost; then it draws
-//! which cascade covers which pixel of the first frame, and the four maps.
+//! `cargo run --release --example city -- [FOLDER] --frames N` flies through its streets and over
+//! its roofs in N images, written to `target/city` or the folder named, with a table of what each
+//! frame's shadows cost; then it draws which cascade covers which pixel of the first frame, and the
+//! four maps.
 //!
 //! ```text
 //! town.rs          streets, blocks, houses and towers

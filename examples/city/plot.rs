@@ -74,7 +74,8 @@ fn tower(random: &mut Random, center: Vec2, eaves: f32) -> Vec<Part> {
     parts
 }
 
-/// Returns rows of houses along four streets, with a gate left open here and there, and a shed in the yard.
+/// Returns rows of houses along four streets, with a gate left open here and there, and a shed in
+/// the yard.
 fn courtyard(random: &mut Random, center: Vec2, eaves: f32) -> Vec<Part> {
     let outer = BLOCK_SIDE * 0.5 - PAVEMENT;
     let middle = outer - HOUSE_DEPTH * 0.5;
@@ -129,7 +130,8 @@ fn roof_room(random: &mut Random, house: Vec2, half: Vec2, bottom: f32, plaster:
     upright(house + aside, half, bottom, top, plaster * 0.85)
 }
 
-/// Returns a box from `bottom` to `top` over the ground rectangle of half size `half` around `center` (x and z).
+/// Returns a box from `bottom` to `top` over the ground rectangle of half size `half` around
+/// `center` (x and z).
 pub fn upright(center: Vec2, half: Vec2, bottom: f32, top: f32, albedo: Vec3) -> Part {
     let scale = Vec3::new(half.x, (top - bottom) * 0.5, half.y);
     let middle = Vec3::new(center.x, (top + bottom) * 0.5, center.y);

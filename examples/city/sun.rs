@@ -24,13 +24,15 @@ pub const MAP_SIZE: u32 = 2048;
 /// Is the number of cascades.
 pub const CASCADES: u32 = 4;
 
-/// Points from the town to the sun: some thirty degrees above the roofs, and slightly across the streets.
+/// Points from the town to the sun: some thirty degrees above the roofs, and slightly across the
+/// streets.
 const TOWARD_SUN: Vec3 = Vec3::new(0.44, 0.52, 0.70);
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
-/// Is the size at which images are drawn: twice their own, and then averaged. Multisampling would shade at the centre
-/// of a pixel what only a corner of it shows: at the foot of a lit wall that is pavement inside the house, and dark.
+/// Is the size at which images are drawn: twice their own, and then averaged. Multisampling would
+/// shade at the centre of a pixel what only a corner of it shows: at the foot of a lit wall that is
+/// pavement inside the house, and dark.
 const DRAWN_SIZE: [u32; 2] = [2 * crate::SIZE[0], 2 * crate::SIZE[1]];
 
 /// Selects what an image shows.
@@ -100,7 +102,8 @@ impl Sun {
         self.shadow.maps().report()
     }
 
-    /// Returns the CPU time of the last frame's shadows: checks, fit, cull, and the recording of the passes.
+    /// Returns the CPU time of the last frame's shadows: checks, fit, cull, and the recording of
+    /// the passes.
     pub fn record_time(&self) -> Duration {
         self.record_time
     }

@@ -29,8 +29,8 @@ pub struct Town {
     box_mesh: Mesh,
     dome_mesh: Mesh,
     instances: wgpu::Buffer,
-    /// Is the index of the first dome. The instances are, in order: ground and pavements, buildings that are boxes,
-    /// domes.
+    /// Is the index of the first dome. The instances are, in order: ground and pavements, buildings
+    /// that are boxes, domes.
     first_dome: u32,
     instance_count: u32,
 }
@@ -115,7 +115,8 @@ fn street() -> Part {
     plot::upright(Vec2::ZERO, Vec2::splat(half), -1.0, 0.0, asphalt)
 }
 
-/// Creates a pipeline that reads the matrices where the scene's pass reads them: in the instance buffer.
+/// Creates a pipeline that reads the matrices where the scene's pass reads them: in the instance
+/// buffer.
 fn caster_pipeline(device: &wgpu::Device) -> Result<CasterPipeline, CasterError> {
     CasterPipeline::new(
         device,

@@ -55,8 +55,8 @@ impl ShadowCaster for SceneCaster<'_> {
     }
 }
 
-/// Returns one caster per instance. Both sides of every triangle cast, except for closed solids, whose back faces are
-/// never the first that the light meets.
+/// Returns one caster per instance. Both sides of every triangle cast, except for closed solids,
+/// whose back faces are never the first that the light meets.
 pub fn scene_casters<'a>(
     gpu: &Gpu,
     scene: &Scene,

@@ -1,4 +1,5 @@
-//! Holds the scene on the device: one vertex, one index and one instance buffer, and a bind group per material.
+//! Holds the scene on the device: one vertex, one index and one instance buffer, and a bind group
+//! per material.
 
 use std::ops::Range;
 

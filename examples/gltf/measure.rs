@@ -28,8 +28,8 @@ impl Times {
     }
 }
 
-/// Renders the frames; the last one stays in the renderer's targets. Every frame draws every map again, so that there
-/// is something to measure.
+/// Renders the frames; the last one stays in the renderer's targets. Every frame draws every map
+/// again, so that there is something to measure.
 pub fn frames(
     gpu: &Gpu,
     scene: &Scene,

@@ -1,5 +1,5 @@
-// Computes Blinn-Phong with the library's visibility. It is put together with the WGSL of ShadowBindings and
-// `visibility_of_light`.
+// Computes Blinn-Phong with the library's visibility. It is put together with the WGSL of
+// ShadowBindings and `visibility_of_light`.
 
 struct Frame {
     clip_from_render: mat4x4<f32>,
@@ -17,7 +17,8 @@ struct Light {
     // Are scale and offset by which the cosine fades from 0 to 1 over the rim of a cone.
     cone_scale: f32,
     cone_offset: f32,
-    // Are the number of its maps, counted from 1, and its index among their lights; 0 maps for a light without shadows.
+    // Are the number of its maps, counted from 1, and its index among their lights; 0 maps for a
+    // light without shadows.
     maps: u32,
     index: u32,
 }
@@ -51,7 +52,8 @@ fn vertex(
     @location(6) column_w: vec4<f32>,
 ) -> Surface {
     let render_from_model = mat4x4<f32>(column_x, column_y, column_z, column_w);
-    // Normals are transformed by the cofactors, which are correct for any scale, uneven or mirrored.
+    // Normals are transformed by the cofactors, which are correct for any scale, uneven or
+    // mirrored.
     let cofactors = mat3x3<f32>(
         cross(column_y.xyz, column_z.xyz),
         cross(column_z.xyz, column_x.xyz),
@@ -79,8 +81,8 @@ fn arrival(light: Light, position: vec3<f32>) -> Arrival {
     let to_light = light.position - position;
     let distance_squared = max(dot(to_light, to_light), 1e-12);
     let toward_light = to_light * inverseSqrt(distance_squared);
-    // KHR_lights_punctual specifies this: inverse square, windowed by the range, and smooth between inner and outer
-    // cone.
+    // KHR_lights_punctual specifies this: inverse square, windowed by the range, and smooth between
+    // inner and outer cone.
     let reach = distance_squared / (light.range * light.range);
     let window = clamp(1.0 - reach * reach, 0.0, 1.0);
     let cone = dot(light.direction, -toward_light) * light.cone_scale + light.cone_offset;
@@ -121,7 +123,8 @@ fn shade(surface: Surface) -> @location(0) vec4<f32> {
     return vec4<f32>(color, 1.0);
 }
 
-// Writes the visibility of the first light where the facet faces it and its light arrives, and 1 elsewhere.
+// Writes the visibility of the first light where the facet faces it and its light arrives, and 1
+// elsewhere.
 @fragment
 fn visibility(surface: Surface) -> @location(0) vec4<f32> {
     let alpha = base_color(surface.uv).a;

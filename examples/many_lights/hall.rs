@@ -1,5 +1,5 @@
-//! Builds a hall of 24 by 14 by 6 metres: floor and walls as flat meshes, a ceiling with a skylight, columns, and
-//! objects.
+//! Builds a hall of 24 by 14 by 6 metres: floor and walls as flat meshes, a ceiling with a
+//! skylight, columns, and objects.
 
 use example_support::camera::Camera;
 use example_support::mesh::{Instance, Object, Vertex, cube, sphere, square};
@@ -83,8 +83,8 @@ impl Hall {
         &self.objects
     }
 
-    /// Returns everything as casters, walls and floor included: the library finds for each light what nothing can lie
-    /// behind.
+    /// Returns everything as casters, walls and floor included: the library finds for each light
+    /// what nothing can lie behind.
     pub fn casters(&self) -> Vec<&dyn ShadowCaster> {
         self.casters.iter().map(|caster| caster as _).collect()
     }
@@ -113,8 +113,8 @@ fn shell() -> [(Vec3, Vec3, Vec3); 5] {
     ]
 }
 
-/// Returns four slabs around the skylight, and beams across it. The eaves keep the sun from the foot of the walls,
-/// where these have no thickness that a texel could resolve.
+/// Returns four slabs around the skylight, and beams across it. The eaves keep the sun from the
+/// foot of the walls, where these have no thickness that a texel could resolve.
 fn ceiling() -> Vec<Mat4> {
     let slab = |low: [f32; 2], high: [f32; 2], thickness: f32| {
         let low = Vec3::new(low[0], HEIGHT, low[1]);

@@ -1,5 +1,5 @@
-// Contains the hall's fragment stage. The text before this one defines `shade`, Blinn-Phong under the sun, and the one
-// before that `shadow_sun`, `shadow_spots` and `shadow_lamps`.
+// Contains the hall's fragment stage. The text before this one defines `shade`, Blinn-Phong under
+// the sun, and the one before that `shadow_sun`, `shadow_spots` and `shadow_lamps`.
 
 struct Light {
     place: vec3<f32>,
@@ -33,8 +33,8 @@ fn unshadowed(light: Light, surface: Surface) -> vec3<f32> {
 @fragment
 fn fragment(surface: Surface) -> @location(0) vec4<f32> {
     var color = shade(surface, shadow_sun(surface.position, surface.normal));
-    // A light's number here is its slot in the pool. Where a light does not reach the surface, its shadow is not
-    // sampled.
+    // A light's number here is its slot in the pool. Where a light does not reach the surface, its
+    // shadow is not sampled.
     for (var i = 0u; i < 4u; i++) {
         let light = unshadowed(lights.spots[i], surface);
         if any(light > vec3<f32>(0.0)) {

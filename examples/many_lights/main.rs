@@ -1,9 +1,11 @@
-//! Shows a hall with a sun, four spot lights and 32 point lights, all with shadows, in one bind group.
+//! Shows a hall with a sun, four spot lights and 32 point lights, all with shadows, in one bind
+//! group.
 //!
-//! `cargo run --example many_lights -- [FOLDER] --frames N` draws N images into `target/many_lights` or the folder
-//! named, and prints for each frame what its shadows cost. Five of the point lights and one of the spot lights move,
-//! and a budget of views per frame refreshes the most important of them first; a light that does not move costs nothing
-//! from the second frame on.
+//! `cargo run --example many_lights -- [FOLDER] --frames N` draws N images into
+//! `target/many_lights` or the folder named, and prints for each frame what its shadows cost. Five
+//! of the point lights and one of the spot lights move, and a budget of views per frame refreshes
+//! the most important of them first; a light that does not move costs nothing from the second frame
+//! on.
 //!
 //! ```text
 //! hall.rs          floor, walls, skylight, columns, and objects
@@ -43,8 +45,8 @@ struct Arguments {
     /// Sets the number of images of the moving lights.
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
     frames: u32,
-    /// Sets the largest number of views of point lights drawn in a frame; the first frame, in which all are new, has no
-    /// limit.
+    /// Sets the largest number of views of point lights drawn in a frame; the first frame, in which
+    /// all are new, has no limit.
     #[arg(long, default_value_t = 12)]
     budget: u32,
 }

@@ -18,8 +18,9 @@ use crate::shadows::Shadows;
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
-/// Is the size at which images are drawn: twice their own, and then averaged. Multisampling would shade at the centre
-/// of a pixel what only a corner of it shows: at the foot of a wall that is ground outside, in the sun.
+/// Is the size at which images are drawn: twice their own, and then averaged. Multisampling would
+/// shade at the centre of a pixel what only a corner of it shows: at the foot of a wall that is
+/// ground outside, in the sun.
 const DRAWN_SIZE: [u32; 2] = [2 * SIZE[0], 2 * SIZE[1]];
 
 /// Holds the pass that draws the hall, and the lights that its fragment stage loops over.
@@ -103,7 +104,8 @@ impl Painter {
             shadows: shadows.bindings().bind_group(),
             target: &target,
         };
-        // These are glowing balls at the point lights. They cast nothing, since all of their light comes from inside.
+        // These are glowing balls at the point lights. They cast nothing, since all of their light
+        // comes from inside.
         let bulbs: Vec<_> = lights
             .lamps
             .iter()

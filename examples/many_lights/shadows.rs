@@ -76,7 +76,8 @@ impl Shadows {
         &self.bindings
     }
 
-    /// Records the depth passes of what has changed; of the point lights no more than `budget` views.
+    /// Records the depth passes of what has changed; of the point lights no more than `budget`
+    /// views.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -125,8 +126,8 @@ impl Shadows {
         Ok(())
     }
 
-    /// Returns for each set of maps its name, its report, views per light, and which of its lights move (none for a sun
-    /// that does not).
+    /// Returns for each set of maps its name, its report, views per light, and which of its lights
+    /// move (none for a sun that does not).
     pub fn reports(&self) -> [(&str, &ShadowReport, usize, &[bool]); 3] {
         [
             ("sun", self.sun.maps().report(), 1, &[]),

@@ -6,8 +6,8 @@ use wgpu_shadows::{report::ShadowReport, report::ViewReport, report::ViewStatus}
 
 use crate::shadows::Shadows;
 
-/// Returns the number of views by status, passes, draws and bytes, for each set of maps, and for its lights that are
-/// static and that move.
+/// Returns the number of views by status, passes, draws and bytes, for each set of maps, and for
+/// its lights that are static and that move.
 pub fn of(shadows: &Shadows) -> String {
     let mut table = format!(
         "{:14}{:>7}{:>7}{:>10}{:>7}{:>8}{:>7}{:>12}\n",

@@ -75,7 +75,8 @@ impl Lamp {
         self.shadow.maps().report()
     }
 
-    /// Draws the image of the room with the light at `place`: depth passes of what the camera needs, then the scene.
+    /// Draws the image of the room with the light at `place`: depth passes of what the camera
+    /// needs, then the scene.
     pub fn draw(
         &mut self,
         gpu: &Gpu,

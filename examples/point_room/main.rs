@@ -1,11 +1,11 @@
-//! Shows a point light in a room: the point-shadow chapter of graphics tutorials, without its seams and without its
-//! acne.
+//! Shows a point light in a room: the point-shadow chapter of graphics tutorials, without its seams
+//! and without its acne.
 //!
-//! `cargo run --example point_room -- [FOLDER] --frames N` moves the light over N images, draws the same moment with
-//! the library's filter and with the two classic ones, and lays the six faces of the light's map out flat, into
-//! `target/point_room` or the folder named. The scene is that of
-//! <https://learnopengl.com/Advanced-Lighting/Shadows/Point-Shadows>: a room of ten by ten by ten metres with five
-//! cubes in it.
+//! `cargo run --example point_room -- [FOLDER] --frames N` moves the light over N images, draws the
+//! same moment with the library's filter and with the two classic ones, and lays the six faces of
+//! the light's map out flat, into `target/point_room` or the folder named. The scene is that of
+//! <https://learnopengl.com/Advanced-Lighting/Shadows/Point-Shadows>: a room of ten by ten by ten
+//! metres with five cubes in it.
 //!
 //! ```text
 //! room.rs          walls, cubes, and where the light hangs

@@ -72,8 +72,8 @@ impl Room {
         self.casters.iter().map(|caster| caster as _).collect()
     }
 
-    /// Returns cubes and walls as casters. Nothing lies behind the walls, so that they need not cast; here they do, to
-    /// be seen in the map.
+    /// Returns cubes and walls as casters. Nothing lies behind the walls, so that they need not
+    /// cast; here they do, to be seen in the map.
     pub fn cubes_and_walls(&self) -> Vec<&dyn ShadowCaster> {
         let mut casters = self.cubes();
         casters.push(&self.wall_caster);
@@ -95,8 +95,8 @@ pub fn camera(size: [u32; 2]) -> Camera {
     Camera::new(eye, Vec3::new(-1.2, -0.6, -1.8), 1.3, size)
 }
 
-/// Returns the position of the light in frame `index` of `count`: half a swing of the tutorial's, along z through the
-/// middle.
+/// Returns the position of the light in frame `index` of `count`: half a swing of the tutorial's,
+/// along z through the middle.
 pub fn lamp_place(index: u32, count: u32) -> Vec3 {
     let share = (index as f32 + 0.5) / count as f32;
     Vec3::new(0.0, 0.0, 3.0 * (PI * (share - 0.5)).sin())

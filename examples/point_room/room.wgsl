@@ -1,5 +1,5 @@
-// Contains the room's fragment stage. The text before this one defines Blinn-Phong, and the one before that
-// `shadow_lamp`.
+// Contains the room's fragment stage. The text before this one defines Blinn-Phong, and the one
+// before that `shadow_lamp`.
 
 @fragment
 fn fragment(surface: Surface) -> @location(0) vec4<f32> {

@@ -1,5 +1,5 @@
-//! Provides `shadow_sun(position, normal)` for the scene's shader, with its bind group: that of the library or that of
-//! the tutorial.
+//! Provides `shadow_sun(position, normal)` for the scene's shader, with its bind group: that of the
+//! library or that of the tutorial.
 
 use wgpu_shadows::{
     DirectionalShadow, ShadowBindings, ShadowBindingsDescriptor, error::BindingsError, shader,
@@ -16,7 +16,8 @@ pub struct Lookup {
 }
 
 impl Lookup {
-    /// Returns the library's function: filter and bias of the light, and lit wherever no map covers the position.
+    /// Returns the library's function: filter and bias of the light, and lit wherever no map covers
+    /// the position.
     pub fn by_the_library(
         device: &wgpu::Device,
         sun: &DirectionalShadow,
@@ -36,8 +37,9 @@ impl Lookup {
         })
     }
 
-    /// Returns the tutorial's function with its mistake. It also shows how an engine uses the library's WGSL modules in
-    /// a bind group of its own: all that they need is the light's uniform buffer, its map and a sampler.
+    /// Returns the tutorial's function with its mistake. It also shows how an engine uses the
+    /// library's WGSL modules in a bind group of its own: all that they need is the light's uniform
+    /// buffer, its map and a sampler.
     pub fn by_mistake(
         device: &wgpu::Device,
         sun: &DirectionalShadow,
@@ -63,7 +65,8 @@ impl Lookup {
             label: Some("out of range"),
             entries: &[entry(0, view), entry(1, map), entry(2, sampler)],
         });
-        // Depth is reversed: a receiver is lit where it is at least as near as the depth in the map.
+        // Depth is reversed: a receiver is lit where it is at least as near as the depth in the
+        // map.
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("out of range"),
             address_mode_u: wgpu::AddressMode::ClampToEdge,

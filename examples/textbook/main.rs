@@ -1,8 +1,10 @@
-//! Shows the shadow-mapping chapter of graphics tutorials step by step: each mistake, its remedy, and a figure that
-//! proves it.
+//! Shows the shadow-mapping chapter of graphics tutorials step by step: each mistake, its remedy,
+//! and a figure that proves it.
 //!
-//! `cargo run --example textbook [FOLDER]` draws one image per step into `target/textbook`, or the folder named. The
-//! scene is that of <https://learnopengl.com/Advanced-Lighting/Shadows/Shadow-Mapping>: a floor, three cubes and a sun.
+//! `cargo run --example textbook [FOLDER]` draws one image per step into `target/textbook`, or the
+//! folder named. The scene is that of
+//! <https://learnopengl.com/Advanced-Lighting/Shadows/Shadow-Mapping>: a floor, three cubes and a
+//! sun.
 //!
 //! ```text
 //! steps.rs            what each step does, and what it shows

@@ -1,5 +1,5 @@
-//! Records the engine's passes: the image with four samples per pixel, and the visibility alone with one, for
-//! measuring.
+//! Records the engine's passes: the image with four samples per pixel, and the visibility alone
+//! with one, for measuring.
 
 use std::error::Error;
 
@@ -42,7 +42,8 @@ pub struct Painted {
     pub visibility: Vec<f32>,
 }
 
-/// Draws the scene as `camera` sees it, after the commands of `encoder`, submits, and reads both outputs back.
+/// Draws the scene as `camera` sees it, after the commands of `encoder`, submits, and reads both
+/// outputs back.
 pub fn paint(
     gpu: &Gpu,
     scene: &Scene,

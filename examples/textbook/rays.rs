@@ -44,8 +44,8 @@ impl World {
             .min_by(|one, other| one.t.total_cmp(&other.t))
     }
 
-    /// Returns whether a cube other than `own` blocks `ray`. A convex body does not shadow the side that it turns to
-    /// the light, and the floor is below everything.
+    /// Returns whether a cube other than `own` blocks `ray`. A convex body does not shadow the side
+    /// that it turns to the light, and the floor is below everything.
     pub fn is_blocked(&self, ray: Ray, own: Option<usize>) -> bool {
         let cubes = self.cubes.iter().enumerate();
         cubes
@@ -54,8 +54,8 @@ impl World {
     }
 }
 
-/// Intersects by the slab method: a ray is inside the cube from -1 to 1 where it is between all three pairs of opposite
-/// sides.
+/// Intersects by the slab method: a ray is inside the cube from -1 to 1 where it is between all
+/// three pairs of opposite sides.
 fn enter_cube(render_from_model: &DMat4, index: usize, ray: Ray) -> Option<Hit> {
     let model_from_render = render_from_model.inverse();
     let origin = model_from_render.transform_point3(ray.origin);

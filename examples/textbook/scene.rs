@@ -1,4 +1,5 @@
-//! Builds the tutorial's scene: a floor of 50 by 50, three cubes, and a sun that shines from (-2, 4, -1) to the origin.
+//! Builds the tutorial's scene: a floor of 50 by 50, three cubes, and a sun that shines from (-2,
+//! 4, -1) to the origin.
 
 use example_support::mesh::{Instance, Object, Vertex, cube, square};
 use glam::{Mat4, Quat, Vec3};
@@ -27,8 +28,9 @@ impl MapRegion {
     }
 }
 
-/// Is the fixed box. It extends below the floor, so that the floor is drawn into the map, and a little beyond the
-/// cubes' shadows. The map's far plane then cuts the floor in sight of the camera, about where the tutorial's does.
+/// Is the fixed box. It extends below the floor, so that the floor is drawn into the map, and a
+/// little beyond the cubes' shadows. The map's far plane then cuts the floor in sight of the
+/// camera, about where the tutorial's does.
 const FIXED_BOX: Aabb = Aabb::new(Vec3::new(-9.0, -0.6, -9.0), Vec3::new(3.2, 2.2, 2.6));
 
 /// Holds floor, cubes and sun.
@@ -80,8 +82,8 @@ impl Scene {
         std::iter::once(&self.floor).chain(&self.cubes)
     }
 
-    /// Returns all objects as casters. Faces of the kind `cull` are left out of the map: the floor, which has no back,
-    /// is left out completely where fronts are culled.
+    /// Returns all objects as casters. Faces of the kind `cull` are left out of the map: the floor,
+    /// which has no back, is left out completely where fronts are culled.
     pub fn casters(
         &self,
         device: &wgpu::Device,

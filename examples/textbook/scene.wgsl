@@ -1,4 +1,5 @@
-// Draws the two images of a step. The text before this one defines Blinn-Phong, and the one before that `shadow_sun`.
+// Draws the two images of a step. The text before this one defines Blinn-Phong, and the one before
+// that `shadow_sun`.
 
 @fragment
 fn fragment_picture(surface: Surface) -> @location(0) vec4<f32> {

@@ -12,7 +12,8 @@ use crate::scene::Scene;
 
 /// Holds what is truly lit at the centre of each pixel.
 pub struct Truth {
-    /// Is stored row by row; `None` where there is no surface, or one that faces away from the light.
+    /// Is stored row by row; `None` where there is no surface, or one that faces away from the
+    /// light.
     lit: Vec<Option<bool>>,
 }
 
@@ -84,8 +85,9 @@ impl Truth {
     }
 }
 
-/// Returns the fraction of the texels of `view` whose grey level is more than one level off the depth that a ray from
-/// the light finds. `pixels` is the map as an image of one pixel per texel: four bytes each, all grey.
+/// Returns the fraction of the texels of `view` whose grey level is more than one level off the
+/// depth that a ray from the light finds. `pixels` is the map as an image of one pixel per texel:
+/// four bytes each, all grey.
 pub fn compare_map(scene: &Scene, view: &ShadowView, pixels: &[u8]) -> f64 {
     let world = World::new(scene);
     let render_from_clip = inverse(view.clip_from_render());

@@ -6,8 +6,8 @@ use shadow_support::scene::Light;
 use crate::contest;
 use crate::paste;
 
-/// Is the factor by which errors may exceed the least and still count as good: a smaller difference is not worth its
-/// cost.
+/// Is the factor by which errors may exceed the least and still count as good: a smaller difference
+/// is not worth its cost.
 const TOLERANCE: f64 = 1.1;
 
 /// Holds what is recommended, and what it is compared with.
@@ -71,8 +71,8 @@ impl<'a> Choice<'a> {
     }
 }
 
-/// Returns the cheapest whose error is within the tolerance of the least that `most_work` can buy, of the library's
-/// configurations only.
+/// Returns the cheapest whose error is within the tolerance of the least that `most_work` can buy,
+/// of the library's configurations only.
 fn cheapest_of_the_best(samples: &[Sample], most_work: f64) -> Option<&Sample> {
     let affordable = || {
         samples.iter().filter(|sample| {

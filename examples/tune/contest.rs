@@ -23,7 +23,8 @@ pub fn default() -> Configuration {
     }
 }
 
-/// Measures every filter with every map size and, for suns, number of cascades; and the tutorial's method.
+/// Measures every filter with every map size and, for suns, number of cascades; and the tutorial's
+/// method.
 pub fn measure(
     subject: &Subject<'_>,
     prober: &mut Prober<'_>,

@@ -1,11 +1,13 @@
-//! Finds which filter, map size and number of cascades suit a scene of your own, measured against ray-traced truth.
+//! Finds which filter, map size and number of cascades suit a scene of your own, measured against
+//! ray-traced truth.
 //!
 //! ```text
 //! cargo run --release --example tune -- FILE.glb
 //! ```
-//! casts rays through the file's triangles in double precision, shadows one of its lights with every configuration, and
-//! prints what each costs and how far it errs, the Pareto front of the two, and the descriptor to paste. Table, chart
-//! and image go to `target/tune`. Without a file, boxes under a sun are measured.
+//! casts rays through the file's triangles in double precision, shadows one of its lights with
+//! every configuration, and prints what each costs and how far it errs, the Pareto front of the
+//! two, and the descriptor to paste. Table, chart and image go to `target/tune`. Without a file,
+//! boxes under a sun are measured.
 //!
 //! ```text
 //! options.rs           the command line

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use clap::Parser;
 use shadow_support::measure::pixels::Effort;
 
-/// Finds the shadow settings that suit a scene: errors against ray-traced truth, costs, and the descriptor to paste.
+/// Finds the shadow settings that suit a scene: errors against ray-traced truth, costs, and the
+/// descriptor to paste.
 #[derive(Parser, Debug)]
 #[command(name = "tune")]
 pub struct Options {
@@ -14,7 +15,8 @@ pub struct Options {
     /// Selects one of the file's lights, in the order of its nodes, counted from 0.
     #[arg(long, default_value_t = 0)]
     pub light: usize,
-    /// Selects one of the file's cameras, in the order of its nodes, counted from 0; a file without cameras gets one.
+    /// Selects one of the file's cameras, in the order of its nodes, counted from 0; a file without
+    /// cameras gets one.
     #[arg(long, default_value_t = 0)]
     pub camera: usize,
     /// Sets the angular diameter of a sun in radians, for soft shadows (the sun's is 0.0093).

@@ -76,7 +76,8 @@ fn from_file(path: &Path, options: &Options) -> Result<Scene, String> {
     })
 }
 
-/// Returns every instance with its transform multiplied out, so that rays and device meet the same corners to the bit.
+/// Returns every instance with its transform multiplied out, so that rays and device meet the same
+/// corners to the bit.
 fn baked(file: &FileScene) -> Vec<Mesh> {
     let bake = |instance: &Instance| {
         let mesh = &file.meshes[instance.mesh];

@@ -73,8 +73,9 @@ fn vertex_needs(vertex: &CasterVertex<'_>) -> VertexNeeds {
     }
 }
 
-/// Checks that `device` can make the pipelines of a caster. wgpu panics over more bind groups or vertex buffers than it
-/// has room for. The contents of an engine's own bind groups are not checked here; the device checks them.
+/// Checks that `device` can make the pipelines of a caster. wgpu panics over more bind groups or
+/// vertex buffers than it has room for. The contents of an engine's own bind groups are not checked
+/// here; the device checks them.
 pub(crate) fn check_caster(
     device: &wgpu::Device,
     descriptor: &CasterPipelineDescriptor<'_>,

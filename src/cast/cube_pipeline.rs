@@ -12,7 +12,8 @@ use crate::gpu::{DepthFormat, capture_device_errors};
 /// Is the format of the maps of point lights.
 const CUBE_FORMAT: DepthFormat = DepthFormat::Float32;
 
-/// Holds what the pipelines are made from, and the pipelines once they have been needed for the first time.
+/// Holds what the pipelines are made from, and the pipelines once they have been needed for the
+/// first time.
 #[derive(Debug)]
 pub(crate) struct CubePipelines {
     position: PositionAttribute,
@@ -36,9 +37,9 @@ impl CubePipelines {
         })
     }
 
-    /// Returns the pipeline for transforms that mirror, or the one for all others. `device` is the one that the
-    /// caster's other pipelines were made on, and has `Features::MULTIVIEW`. Returns `None` where the device refuses to
-    /// make them.
+    /// Returns the pipeline for transforms that mirror, or the one for all others. `device` is the
+    /// one that the caster's other pipelines were made on, and has `Features::MULTIVIEW`. Returns
+    /// `None` where the device refuses to make them.
     pub fn get(&self, device: &wgpu::Device, mirrored: bool) -> Option<&wgpu::RenderPipeline> {
         let make = || {
             capture_device_errors(device, || self.make(device))

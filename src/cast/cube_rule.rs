@@ -1,13 +1,15 @@
 //! Decides whether the six faces of a cube are drawn in one pass or in a pass for each.
 //!
-//! One pass draws every caster once and into all six faces. A pass for each face draws a caster once per face that it
-//! touches. So one pass saves passes and draw calls, and puts every triangle through six faces.
+//! One pass draws every caster once and into all six faces. A pass for each face draws a caster
+//! once per face that it touches. So one pass saves passes and draw calls, and puts every triangle
+//! through six faces.
 //!
-//! The constants were measured on lavapipe of Mesa 25.0.7 (`cargo bench --bench cost`, "one pass for all faces"). With
-//! 50 to 200 casters both ways cost the same where one pass puts through 100 to 250 triangles for each draw call that
-//! it saves; with a dozen casters or fewer, where passes weigh most, they cost the same at 4000 to 20000 triangles for
-//! each pass that it saves. The rule takes the lower ends. On a GPU triangles cost less beside calls, so there one pass
-//! is taken more rarely than it could be.
+//! The constants were measured on lavapipe of Mesa 25.0.7 (`cargo bench --bench cost`, "one pass
+//! for all faces"). With 50 to 200 casters both ways cost the same where one pass puts through 100
+//! to 250 triangles for each draw call that it saves; with a dozen casters or fewer, where passes
+//! weigh most, they cost the same at 4000 to 20000 triangles for each pass that it saves. The rule
+//! takes the lower ends. On a GPU triangles cost less beside calls, so there one pass is taken more
+//! rarely than it could be.
 
 use glam::Vec4;
 
@@ -20,8 +22,9 @@ const TRIANGLES_PER_DRAW: u64 = 96;
 /// Is the largest number of triangles, counted over all faces, that is worth one saved pass.
 const TRIANGLES_PER_PASS: u64 = 4000;
 
-/// Returns the casters that one pass would draw, in order, where it gives the same depths as a pass for each face and
-/// costs less. `views` are the faces that something casts into, all of which are to be drawn whole.
+/// Returns the casters that one pass would draw, in order, where it gives the same depths as a pass
+/// for each face and costs less. `views` are the faces that something casts into, all of which are
+/// to be drawn whole.
 pub(crate) fn one_pass_casters(
     views: &[ViewDraws],
     casters: &FrameCasters<'_>,
@@ -58,9 +61,10 @@ pub(crate) fn one_pass_casters(
     (triangles < worth).then_some(union)
 }
 
-/// Returns whether a part of a caster beyond the light's reach may be visible in a view. Casters are culled by the part
-/// of them that the light reaches. The part beyond can be seen by a view that leaves the caster out, so that one pass
-/// would draw it there while a pass for each face would not.
+/// Returns whether a part of a caster beyond the light's reach may be visible in a view. Casters
+/// are culled by the part of them that the light reaches. The part beyond can be seen by a view
+/// that leaves the caster out, so that one pass would draw it there while a pass for each face
+/// would not.
 fn may_show_beyond_reach(bounds: &Aabb, view: &ShadowView) -> bool {
     let light = view.anchor_render();
     let farthest = (bounds.max - light).max(light - bounds.min).max_element();

@@ -46,9 +46,10 @@ impl CasterPipeline {
     /// Builds the pipelines; call this once per kind of caster, at load time.
     ///
     /// # Errors
-    /// Returns [`CasterError`] for a layout or topology that cannot be drawn, for an empty list of depth formats, for
-    /// more than the device's limits allow, or with the device's own message where it refuses the pipeline (the
-    /// engine's WGSL does not compile, an entry point is missing, a layout does not match).
+    /// Returns [`CasterError`] for a layout or topology that cannot be drawn, for an empty list of
+    /// depth formats, for more than the device's limits allow, or with the device's own message
+    /// where it refuses the pipeline (the engine's WGSL does not compile, an entry point is
+    /// missing, a layout does not match).
     pub fn new(
         device: &wgpu::Device,
         descriptor: &CasterPipelineDescriptor<'_>,
@@ -87,15 +88,16 @@ impl CasterPipeline {
         })
     }
 
-    /// Returns the wgpu pipeline for maps of `format`, for engines that record depth passes of their own. Returns
-    /// `None` if [`CasterPipelineDescriptor::depth_formats`] did not name the format.
+    /// Returns the wgpu pipeline for maps of `format`, for engines that record depth passes of
+    /// their own. Returns `None` if [`CasterPipelineDescriptor::depth_formats`] did not name the
+    /// format.
     pub fn wgpu_pipeline(&self, format: DepthFormat) -> Option<&wgpu::RenderPipeline> {
         let windings = self.variants.by_format[format.index()].as_ref()?;
         Some(&windings[usize::from(self.mirrored)])
     }
 
-    /// Returns the same pipeline for casters whose transform mirrors (negative determinant), so that culling removes
-    /// the same faces.
+    /// Returns the same pipeline for casters whose transform mirrors (negative determinant), so
+    /// that culling removes the same faces.
     pub fn mirrored(&self) -> Self {
         Self {
             variants: Arc::clone(&self.variants),
@@ -103,8 +105,8 @@ impl CasterPipeline {
         }
     }
 
-    /// Returns where the built-in vertex stage expects the transform ([`ModelTransform::Identity`] for the engine's own
-    /// WGSL).
+    /// Returns where the built-in vertex stage expects the transform ([`ModelTransform::Identity`]
+    /// for the engine's own WGSL).
     pub fn model_transform(&self) -> ModelTransform {
         self.variants
             .built_in
@@ -116,14 +118,15 @@ impl CasterPipeline {
         &self.variants.device
     }
 
-    /// Returns the pipeline that draws the six faces of a cube in one pass. Returns `None` for the engine's own WGSL,
-    /// or where the device refuses it.
+    /// Returns the pipeline that draws the six faces of a cube in one pass. Returns `None` for the
+    /// engine's own WGSL, or where the device refuses it.
     pub(crate) fn multiview_pipeline(&self) -> Option<&wgpu::RenderPipeline> {
         let variants = &self.variants;
         variants.cube.as_ref()?.get(&variants.device, self.mirrored)
     }
 
-    /// Returns the number of triangles that `corners` vertices or indices make; for a strip, restarts are not counted.
+    /// Returns the number of triangles that `corners` vertices or indices make; for a strip,
+    /// restarts are not counted.
     pub(crate) fn triangles_of(&self, corners: u32) -> u32 {
         match self.variants.primitive.topology {
             wgpu::PrimitiveTopology::TriangleStrip => corners.saturating_sub(2),
@@ -131,14 +134,16 @@ impl CasterPipeline {
         }
     }
 
-    /// Returns, for strips, the format that indices must have. Returns `None` for lists, which accept any format.
+    /// Returns, for strips, the format that indices must have. Returns `None` for lists, which
+    /// accept any format.
     pub(crate) fn strip_index_format(&self) -> Option<Option<wgpu::IndexFormat>> {
         let is_strip = self.variants.primitive.topology == wgpu::PrimitiveTopology::TriangleStrip;
         is_strip.then_some(self.variants.primitive.strip_index_format)
     }
 
-    /// Returns the bytes that vertex buffer 0 must have so that `vertices` vertices can be drawn in order. If
-    /// `vertices` is 0, since indices may choose any vertex, only data that step per instance count.
+    /// Returns the bytes that vertex buffer 0 must have so that `vertices` vertices can be drawn in
+    /// order. If `vertices` is 0, since indices may choose any vertex, only data that step per
+    /// instance count.
     pub(crate) fn vertex_bytes(&self, vertices: u32) -> u64 {
         self.variants.vertices.bytes(vertices)
     }

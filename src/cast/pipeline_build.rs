@@ -9,10 +9,12 @@ use crate::cast::view_uniform::{multiview_layout, view_layout};
 use crate::gpu::{ALL_FACES_MASK, DepthFormat};
 use crate::shader;
 
-/// Holds the pipeline as described, and the one with the other winding; both are the same where nothing is culled.
+/// Holds the pipeline as described, and the one with the other winding; both are the same where
+/// nothing is culled.
 pub(crate) type BothWindings = [wgpu::RenderPipeline; 2];
 
-/// Holds pipelines by [`DepthFormat::index`], and `None` for a format that the descriptor does not name.
+/// Holds pipelines by [`DepthFormat::index`], and `None` for a format that the descriptor does not
+/// name.
 pub(crate) type ByFormat = [Option<BothWindings>; DepthFormat::ALL.len()];
 
 /// Creates the pipelines for all formats that `descriptor` names.

@@ -1,5 +1,5 @@
-//! Describes what a caster pipeline is made of: the layout of vertices and transforms and how they are shaded. Also
-//! checks that it can be drawn.
+//! Describes what a caster pipeline is made of: the layout of vertices and transforms and how they
+//! are shaded. Also checks that it can be drawn.
 
 use crate::error::CasterError;
 use crate::gpu::DepthFormat;
@@ -9,11 +9,11 @@ use crate::gpu::DepthFormat;
 pub struct PositionAttribute {
     /// Is the number of bytes from one vertex to the next; a multiple of 4.
     pub array_stride: u64,
-    /// Is the number of bytes from the start of a vertex to its position; a multiple of 4. The position must end within
-    /// `array_stride`.
+    /// Is the number of bytes from the start of a vertex to its position; a multiple of 4. The
+    /// position must end within `array_stride`.
     pub offset: u64,
-    /// May be any float, snorm or unorm format of two to four components. A missing z is 0, and a fourth component is
-    /// ignored.
+    /// May be any float, snorm or unorm format of two to four components. A missing z is 0, and a
+    /// fourth component is ignored.
     pub format: wgpu::VertexFormat,
 }
 
@@ -28,15 +28,18 @@ impl PositionAttribute {
     }
 }
 
-/// Tells the built-in vertex stage where to find the transform that takes positions to render space.
+/// Tells the built-in vertex stage where to find the transform that takes positions to render
+/// space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ModelTransform {
     /// States that positions are in render space already.
     Identity,
-    /// Reads four `Float32x4` columns of `render_from_model` from vertex buffer slot 1, stepped once per instance.
+    /// Reads four `Float32x4` columns of `render_from_model` from vertex buffer slot 1, stepped
+    /// once per instance.
     InstanceMatrix {
-        /// Is the number of bytes from one instance to the next; a multiple of 4, at least `offset` + 64.
+        /// Is the number of bytes from one instance to the next; a multiple of 4, at least `offset`
+        /// + 64.
         array_stride: u64,
         /// Is the number of bytes from the start of an instance to the matrix; a multiple of 4.
         offset: u64,
@@ -55,23 +58,28 @@ impl ModelTransform {
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub enum CasterVertex<'a> {
-    /// Uses the library's own stage: a position attribute in vertex buffer slot 0 and a model transform.
+    /// Uses the library's own stage: a position attribute in vertex buffer slot 0 and a model
+    /// transform.
     BuiltIn {
         /// Tells where positions are.
         position: PositionAttribute,
         /// Tells where the transform is.
         model: ModelTransform,
     },
-    /// Puts the engine's WGSL behind the library's caster module, for skinning, displacement and alpha masks.
+    /// Puts the engine's WGSL behind the library's caster module, for skinning, displacement and
+    /// alpha masks.
     ///
-    /// The source may call `shadow_caster_clip(position_render: vec3<f32>) -> vec4<f32>` and must not use `@group(0)`.
-    /// It is drawn into one view at a time: a point light with such a caster draws a pass for each face.
+    /// The source may call `shadow_caster_clip(position_render: vec3<f32>) -> vec4<f32>` and must
+    /// not use `@group(0)`. It is drawn into one view at a time: a point light with such a caster
+    /// draws a pass for each face.
     Wgsl {
         /// Contains the WGSL with the entry points; the caster module is put before it.
         source: &'a str,
-        /// Names the `@vertex` entry point; its `@builtin(position)` is what `shadow_caster_clip` returned.
+        /// Names the `@vertex` entry point; its `@builtin(position)` is what `shadow_caster_clip`
+        /// returned.
         vertex_entry: &'a str,
-        /// Names a `@fragment` entry point without outputs, which may `discard`; `None` for opaque casters.
+        /// Names a `@fragment` entry point without outputs, which may `discard`; `None` for opaque
+        /// casters.
         fragment_entry: Option<&'a str>,
         /// Lists the vertex buffers, from slot 0.
         buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
@@ -81,28 +89,32 @@ pub enum CasterVertex<'a> {
 }
 
 /// Describes what a [`CasterPipeline`](crate::CasterPipeline) is made of.
-/// [`CasterPipeline::new`](crate::CasterPipeline::new) checks it, and returns [`CasterError`](crate::error::CasterError) for
-/// what cannot be drawn.
+/// [`CasterPipeline::new`](crate::CasterPipeline::new) checks it, and returns
+/// [`CasterError`](crate::error::CasterError) for what cannot be drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct CasterPipelineDescriptor<'a> {
     /// Labels the wgpu objects; "shadow caster" if `None`.
     pub label: wgpu::Label<'a>,
-    /// Selects the vertex stage. The default reads tightly packed `Float32x3` positions and one instance matrix.
+    /// Selects the vertex stage. The default reads tightly packed `Float32x3` positions and one
+    /// instance matrix.
     pub vertex: CasterVertex<'a>,
     /// Topology, winding and culling, as wgpu has them.
     ///
-    /// The topology is a triangle list or strip; a strip that is drawn through indices needs their format in
-    /// `strip_index_format`, and a list must not have one. Front faces are those that `front_face` says in the engine's
-    /// space, unless the model transform mirrors. `cull_mode` names the faces, as seen from the light, that are left out of
-    /// the map: `None` (the default) suits every mesh, open sheets included. `Some(Face::Front)` is the classic cure for
-    /// peter-panning: it needs closed solids, and light leaks where they touch the ground exactly. `Some(Face::Back)` takes
-    /// a third off the cost of closed solids and changes nothing of their shadows;
-    /// [`is_closed_solid`](crate::caster::is_closed_solid) tells them. Polygons are filled, depths are clipped and
-    /// rasterization is not conservative: a map of outlines, or of depths beyond its range, is no shadow map.
+    /// The topology is a triangle list or strip; a strip that is drawn through indices needs their
+    /// format in `strip_index_format`, and a list must not have one. Front faces are those that
+    /// `front_face` says in the engine's space, unless the model transform mirrors. `cull_mode`
+    /// names the faces, as seen from the light, that are left out of the map: `None` (the default)
+    /// suits every mesh, open sheets included. `Some(Face::Front)` is the classic cure for
+    /// peter-panning: it needs closed solids, and light leaks where they touch the ground exactly.
+    /// `Some(Face::Back)` takes a third off the cost of closed solids and changes nothing of their
+    /// shadows; [`is_closed_solid`](crate::caster::is_closed_solid) tells them. Polygons are
+    /// filled, depths are clipped and rasterization is not conservative: a map of outlines, or of
+    /// depths beyond its range, is no shadow map.
     pub primitive: wgpu::PrimitiveState,
-    /// Lists the formats of the maps that it will be drawn into; not empty. The default is `Float32` alone; add
-    /// `Unorm16` where a light has such a map. Each format is one more wgpu pipeline. A light whose format is missing
-    /// returns [`ShadowError::CasterFormat`](crate::ShadowError::CasterFormat) when it is recorded.
+    /// Lists the formats of the maps that it will be drawn into; not empty. The default is
+    /// `Float32` alone; add `Unorm16` where a light has such a map. Each format is one more wgpu
+    /// pipeline. A light whose format is missing returns
+    /// [`ShadowError::CasterFormat`](crate::ShadowError::CasterFormat) when it is recorded.
     pub depth_formats: &'a [DepthFormat],
 }
 

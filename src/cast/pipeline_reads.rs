@@ -1,4 +1,5 @@
-//! Describes what a caster pipeline reads beyond the view, so that a mesh can be checked against it.
+//! Describes what a caster pipeline reads beyond the view, so that a mesh can be checked against
+//! it.
 
 use crate::cast::CasterVertex;
 
@@ -46,7 +47,8 @@ impl VertexReads {
     }
 }
 
-/// Returns what a vertex stage takes beyond vertex buffer 0 and, for the built-in stages, the matrix in buffer 1.
+/// Returns what a vertex stage takes beyond vertex buffer 0 and, for the built-in stages, the
+/// matrix in buffer 1.
 pub(crate) fn beyond_a_mesh(vertex: &CasterVertex<'_>) -> Option<String> {
     let CasterVertex::Wgsl {
         buffers,

@@ -4,7 +4,8 @@ use crate::error::DebugViewError;
 use crate::gpu::Need;
 use crate::receive::view_uniform_bytes;
 
-/// Accepts devices whose limits suffice for a debug view that binds `views` views and draws to `format`.
+/// Accepts devices whose limits suffice for a debug view that binds `views` views and draws to
+/// `format`.
 pub(crate) fn check_debug_view(
     device: &wgpu::Device,
     format: wgpu::TextureFormat,

@@ -1,5 +1,5 @@
-//! Draws images for debugging: the contents of a light's maps, and which view covers each pixel. No light depends on
-//! this module.
+//! Draws images for debugging: the contents of a light's maps, and which view covers each pixel. No
+//! light depends on this module.
 //!
 //! ```text
 //! view.rs         DebugView: layers and unfolded cubes as grey levels

@@ -4,13 +4,14 @@ use thiserror::Error;
 
 use crate::error::DeviceError;
 
-/// Tells why [`ShadowBindings::new`](crate::ShadowBindings::new) or [`compose`](crate::shader::compose) failed.
+/// Tells why [`ShadowBindings::new`](crate::ShadowBindings::new) or
+/// [`compose`](crate::shader::compose) failed.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum BindingsError {
     /// The name of a light cannot become part of WGSL identifiers.
     #[error(
-        "ShadowBindingsDescriptor::lights: name must be a lower-case WGSL identifier ([a-z][a-z0-9_]*, no `__`, no `_` or digit at the end, no `map_`, `view_` or `views_` in front, none of the library's own), got {name:?}"
+        "ShadowBindingsDescriptor::lights: name must be a lower-case WGSL identifier ([a-z][a-z0-9_]*, no `__`, no `_` or digit at the end, no `map_`, `view_`, `views_`, `place_of_`, `axes_of_` or `cascade_` in front, none of the library's own), got {name:?}"
     )]
     Name {
         /// Is the name in the descriptor.
@@ -32,8 +33,8 @@ pub enum BindingsError {
         /// Is the device's `max_bind_groups`.
         maximum: u32,
     },
-    /// The lights need more of a resource than one shader stage may use on this device, or the uniforms of one light
-    /// are larger than the device can bind.
+    /// The lights need more of a resource than one shader stage may use on this device, or the
+    /// uniforms of one light are larger than the device can bind.
     #[error(
         "ShadowBindingsDescriptor::lights: the device's {limit} must be at least {needed}, and it is {maximum}"
     )]

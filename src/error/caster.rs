@@ -4,8 +4,8 @@ use thiserror::Error;
 
 use crate::error::{DeviceError, DeviceRefusal};
 
-/// Tells why [`CasterPipeline::new`](crate::CasterPipeline::new), [`MeshCaster::new`](crate::MeshCaster::new) or a
-/// later change of a mesh failed.
+/// Tells why [`CasterPipeline::new`](crate::CasterPipeline::new),
+/// [`MeshCaster::new`](crate::MeshCaster::new) or a later change of a mesh failed.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum CasterError {
@@ -17,7 +17,8 @@ pub enum CasterError {
         /// Is the format in the descriptor.
         format: wgpu::VertexFormat,
     },
-    /// An attribute does not end within its vertex, or its offset or stride is not a multiple of 4 bytes.
+    /// An attribute does not end within its vertex, or its offset or stride is not a multiple of 4
+    /// bytes.
     #[error(
         "{field}: offset {offset} + {size} bytes must lie inside the stride of {array_stride} bytes, and offset and stride must be multiples of 4"
     )]
@@ -54,8 +55,8 @@ pub enum CasterError {
         /// Is the topology in the descriptor.
         topology: wgpu::PrimitiveTopology,
     },
-    /// The primitive state draws outlines or points, does not clip depths, or rasterizes conservatively. None of these
-    /// gives a correct shadow map.
+    /// The primitive state draws outlines or points, does not clip depths, or rasterizes
+    /// conservatively. None of these gives a correct shadow map.
     #[error(
         "CasterPipelineDescriptor::primitive must fill polygons, clip depths and not be conservative, got {polygon_mode:?}, unclipped_depth {unclipped_depth}, conservative {conservative}"
     )]
@@ -67,7 +68,8 @@ pub enum CasterError {
         /// Is the value in the descriptor; it must be false.
         conservative: bool,
     },
-    /// The topology is one of lines or points. Only triangles cast a shadow for which a receiver's bias can be derived.
+    /// The topology is one of lines or points. Only triangles cast a shadow for which a receiver's
+    /// bias can be derived.
     #[error(
         "CasterPipelineDescriptor::primitive.topology must be a triangle topology, got {topology:?}"
     )]
@@ -81,8 +83,8 @@ pub enum CasterError {
         /// Is the path of the field.
         field: &'static str,
     },
-    /// The device cannot use a buffer: most often because the buffer belongs to another device, or because its creation
-    /// failed.
+    /// The device cannot use a buffer: most often because the buffer belongs to another device, or
+    /// because its creation failed.
     #[error("{field} cannot be used on the device: {refusal}")]
     Buffer {
         /// Is the path of the field.
@@ -90,8 +92,8 @@ pub enum CasterError {
         /// Tells why the device cannot use the buffer.
         refusal: DeviceRefusal,
     },
-    /// The pipeline has the engine's own vertex stage, and this reads vertex buffers or bind groups that a
-    /// [`MeshCaster`](crate::MeshCaster) does not set.
+    /// The pipeline has the engine's own vertex stage, and this reads vertex buffers or bind groups
+    /// that a [`MeshCaster`](crate::MeshCaster) does not set.
     #[error(
         "MeshCasterDescriptor::pipeline must take no more than vertex buffer 0 and no bind group of its own, got one that takes {needs}"
     )]

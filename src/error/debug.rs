@@ -8,8 +8,8 @@ use crate::error::DeviceError;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum DebugViewError {
-    /// A fragment shader cannot write floats to the target format. [`DebugView::draw_cascades`] also returns this where
-    /// the format cannot be blended.
+    /// A fragment shader cannot write floats to the target format. [`DebugView::draw_cascades`]
+    /// also returns this where the format cannot be blended.
     ///
     /// [`DebugView::draw_cascades`]: crate::debug::DebugView::draw_cascades
     #[error("DebugView: the target must be a renderable float colour format, got {format:?}")]
@@ -17,7 +17,8 @@ pub enum DebugViewError {
         /// Is the format of the target.
         format: wgpu::TextureFormat,
     },
-    /// The debug view needs more of a resource than the limits with which the device was created allow.
+    /// The debug view needs more of a resource than the limits with which the device was created
+    /// allow.
     #[error("DebugView: the device's {limit} must be at least {value}, and it is {maximum}")]
     OverDeviceLimit {
         /// Is the name of the limit in `wgpu::Limits`.

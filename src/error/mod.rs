@@ -1,5 +1,5 @@
-//! Defines every error of the crate. Each tells the field, the rule that it must obey, and the value that broke the
-//! rule.
+//! Defines every error of the crate. Each tells the field, the rule that it must obey, and the
+//! value that broke the rule.
 //!
 //! ```text
 //! device.rs   DeviceError and DeviceRefusal: what a device did not create, and why

@@ -20,9 +20,9 @@ const MAX_DIVIDED: usize = 16;
 /// Is the largest number of pairs of a divided caster and a receiver in a frame.
 const MAX_PAIRS: usize = 1 << 16;
 
-/// Is the least side of a large caster, as a fraction of the side of what all casters cover together.
-/// A smaller one, counted as a whole, makes the map at most a quarter wider, which is little more
-/// than one size step.
+/// Is the least side of a large caster, as a fraction of the side of what all casters cover
+/// together. A smaller one, counted as a whole, makes the map at most a quarter wider, which is
+/// little more than one size step.
 const LARGE_SHARE: f64 = 0.25;
 
 /// Is the union of the parts of one caster that rise about equally high above what they shadow.

@@ -1,7 +1,8 @@
 //! Makes the pipelines of passes over a whole viewport.
 
-/// Makes a pipeline for passes with one colour target, no depth attachment and one sample. `module` contains
-/// `wgsl/pass/fullscreen.wgsl` and `fragment_entry`. The caller's error scope captures device errors.
+/// Makes a pipeline for passes with one colour target, no depth attachment and one sample. `module`
+/// contains `wgsl/pass/fullscreen.wgsl` and `fragment_entry`. The caller's error scope captures
+/// device errors.
 pub(crate) fn fullscreen_pipeline(
     device: &wgpu::Device,
     label: &str,

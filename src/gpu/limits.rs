@@ -1,6 +1,6 @@
-//! Checks what objects need of a device's limits before anything is made. A device may have been created with limits
-//! far below WebGPU's defaults; the message that it then gives about an object does not help whoever chose a number of
-//! cascades.
+//! Checks what objects need of a device's limits before anything is made. A device may have been
+//! created with limits far below WebGPU's defaults; the message that it then gives about an object
+//! does not help whoever chose a number of cascades.
 
 /// Is a limit in its own unit, with the amount that is needed and the amount that the device has.
 #[derive(Clone, Copy, Debug)]

@@ -1,4 +1,5 @@
-//! Determines whether a device can draw the six faces of a cube in one multiview pass and its driver does so correctly.
+//! Determines whether a device can draw the six faces of a cube in one multiview pass and its
+//! driver does so correctly.
 
 use std::num::NonZeroU32;
 
@@ -8,12 +9,14 @@ pub(crate) const FACE_COUNT: u32 = 6;
 /// Is the multiview mask of a pass over all faces.
 pub(crate) const ALL_FACES_MASK: Option<NonZeroU32> = NonZeroU32::new((1 << FACE_COUNT) - 1);
 
-/// Is the first Mesa version whose llvmpipe was seen to be correct. Mesa's llvmpipe, which lavapipe (Vulkan) rasterises
-/// with, draws the triangles of a vertex batch into wrong layers where the batch is clipped: with 22.3.6, in a room
-/// with a ball around the lamp, up to a quarter of a face's texels are wrong. The versions between are not trusted.
+/// Is the first Mesa version whose llvmpipe was seen to be correct. Mesa's llvmpipe, which lavapipe
+/// (Vulkan) rasterises with, draws the triangles of a vertex batch into wrong layers where the
+/// batch is clipped: with 22.3.6, in a room with a ball around the lamp, up to a quarter of a
+/// face's texels are wrong. The versions between are not trusted.
 const FIRST_CORRECT_LLVMPIPE: [u32; 3] = [25, 0, 7];
 
-/// Returns true where the engine enabled the feature and the limit, and the driver is not one known to be wrong.
+/// Returns true where the engine enabled the feature and the limit, and the driver is not one known
+/// to be wrong.
 pub(crate) fn supports_cube_multiview(device: &wgpu::Device) -> bool {
     device.features().contains(wgpu::Features::MULTIVIEW)
         && device.limits().max_multiview_view_count >= FACE_COUNT
@@ -27,8 +30,8 @@ fn is_known_wrong(adapter: &wgpu::AdapterInfo) -> bool {
     is_llvmpipe && mesa_version(&adapter.driver_info).unwrap_or_default() < FIRST_CORRECT_LLVMPIPE
 }
 
-/// Returns the numbers after "Mesa" in "Mesa 25.0.7-2 (LLVM 15.0.6)". A missing second or third number is 0; without a
-/// first one the result is `None`.
+/// Returns the numbers after "Mesa" in "Mesa 25.0.7-2 (LLVM 15.0.6)". A missing second or third
+/// number is 0; without a first one the result is `None`.
 fn mesa_version(driver_info: &str) -> Option<[u32; 3]> {
     let (_, version) = driver_info.split_once("Mesa ")?;
     let end = version

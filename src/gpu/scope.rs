@@ -1,8 +1,10 @@
-//! Returns device errors as values: wgpu reports them to an error scope, or, where the device is lost, not at all.
+//! Returns device errors as values: wgpu reports them to an error scope, or, where the device is
+//! lost, not at all.
 //!
-//! A browser's WebGPU resolves an error scope later, in a promise. There is no error to return by then, and a scope
-//! that was closed without waiting would swallow it. So in a browser no scope is opened: errors go where the engine
-//! listens for them, to `Device::on_uncaptured_error` and `Device::set_device_lost_callback`.
+//! A browser's WebGPU resolves an error scope later, in a promise. There is no error to return by
+//! then, and a scope that was closed without waiting would swallow it. So in a browser no scope is
+//! opened: errors go where the engine listens for them, to `Device::on_uncaptured_error` and
+//! `Device::set_device_lost_callback`.
 
 use std::future::Future;
 use std::pin::pin;
@@ -10,8 +12,8 @@ use std::task::{Context, Poll, Waker};
 
 use crate::error::DeviceRefusal;
 
-/// Runs `create` and returns what it made if the device made all of it. In a browser with WebGPU no error is captured,
-/// and an object that could not be made is an invalid one, as WebGPU specifies.
+/// Runs `create` and returns what it made if the device made all of it. In a browser with WebGPU no
+/// error is captured, and an object that could not be made is an invalid one, as WebGPU specifies.
 pub(crate) fn capture_device_errors<T>(
     device: &wgpu::Device,
     create: impl FnOnce() -> T,
@@ -45,9 +47,9 @@ pub(crate) fn filled_buffer(
     })
 }
 
-/// Returns whether the device is not lost. wgpu does not report the loss of a device to error scopes and returns
-/// invalid objects. A buffer that is mapped at its creation is the exception: its memory cannot be reached. This probe
-/// needs no queue and waits for nothing.
+/// Returns whether the device is not lost. wgpu does not report the loss of a device to error
+/// scopes and returns invalid objects. A buffer that is mapped at its creation is the exception:
+/// its memory cannot be reached. This probe needs no queue and waits for nothing.
 fn is_alive(device: &wgpu::Device) -> bool {
     let probe = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("shadow device probe"),
@@ -58,8 +60,8 @@ fn is_alive(device: &wgpu::Device) -> bool {
     probe.get_mapped_range_mut(..).is_ok()
 }
 
-/// Runs `create` in error scopes. `create` returns `None` where the device did not make its object; if the device
-/// reports no error with that, it is lost.
+/// Runs `create` in error scopes. `create` returns `None` where the device did not make its object;
+/// if the device reports no error with that, it is lost.
 fn scoped<T>(
     device: &wgpu::Device,
     create: impl FnOnce() -> Option<T>,
@@ -85,8 +87,8 @@ fn scoped<T>(
     }
 }
 
-/// Returns whether error scopes of the device are resolved later than the call that closes them. WebGL in a browser is
-/// wgpu's own and resolves at once.
+/// Returns whether error scopes of the device are resolved later than the call that closes them.
+/// WebGL in a browser is wgpu's own and resolves at once.
 fn answers_later(device: &wgpu::Device) -> bool {
     cfg!(target_family = "wasm") && device.adapter_info().backend == wgpu::Backend::BrowserWebGpu
 }

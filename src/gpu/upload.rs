@@ -4,16 +4,16 @@ use crate::error::DeviceError;
 use crate::gpu::{capture_device_errors, filled_buffer};
 use crate::{ShadowError, error::DeviceRefusal};
 
-/// Is a uniform buffer whose writes go through the engine's encoder, so that two frames recorded before one submission
-/// each see their own values. Unchanged contents are not written again.
+/// Is a uniform buffer whose writes go through the engine's encoder, so that two frames recorded
+/// before one submission each see their own values. Unchanged contents are not written again.
 #[derive(Debug)]
 pub(crate) struct UploadBuffer {
     buffer: wgpu::Buffer,
     written: Vec<u8>,
 }
 
-/// Holds bytes to be copied, made before anything is recorded, so that a device that refuses leaves the encoder
-/// untouched.
+/// Holds bytes to be copied, made before anything is recorded, so that a device that refuses leaves
+/// the encoder untouched.
 pub(crate) struct PendingUpload {
     staging: wgpu::Buffer,
     bytes: Vec<u8>,
@@ -41,8 +41,8 @@ impl UploadBuffer {
         &self.buffer
     }
 
-    /// Stages `bytes` (at most the buffer's size, a multiple of 4). Returns `None` where the buffer holds them already
-    /// or there are none.
+    /// Stages `bytes` (at most the buffer's size, a multiple of 4). Returns `None` where the buffer
+    /// holds them already or there are none.
     pub fn prepare(
         &self,
         device: &wgpu::Device,

@@ -85,15 +85,16 @@ impl Default for DirectionalShadowDescriptor<'_> {
 }
 
 impl DirectionalShadowDescriptor<'_> {
-    /// Describes the cheapest light whose shadow edges are smooth: one gather per lookup and a
-    /// quarter of the default's texels, with 1.5 times the default's error.
+    /// Describes the cheapest light whose shadow edges are smooth: the sampler's own comparison, at
+    /// 0.4 times the cycles of the default's lookup, and a quarter of the default's texels, with
+    /// twice the default's error.
     pub const CHEAP: Self = Self {
         label: None,
         map_size: 1024,
         cascades: 1,
         layout: CascadeLayout::Fixed,
         split: CascadeSplit::Logarithmic,
-        filter: Filter::Bilinear { sharpness: 1.0 },
+        filter: Filter::Hardware,
         bias: Bias::Auto,
         blend: 0.0,
         fade: 0.0,

@@ -16,15 +16,18 @@ use crate::shader;
 pub struct ShadowBindingsDescriptor<'a> {
     /// Labels the bind group and its layout; "shadow bindings" if `None`, the default.
     pub label: wgpu::Label<'a>,
-    /// Is the index of the bind group in the engine's pipelines, below the device's `max_bind_groups`. The default is
-    /// 1.
+    /// Is the index of the bind group in the engine's pipelines, below the device's
+    /// `max_bind_groups`. The default is 1.
     pub group: u32,
-    /// Lists the shader stages that call the functions. The default is `FRAGMENT`; add `COMPUTE` for volumetric light,
-    /// for example. A pipeline that calls them from a stage missing here fails validation.
+    /// Lists the shader stages that call the functions. The default is `FRAGMENT`; add `COMPUTE`
+    /// for volumetric light, for example. A pipeline that calls them from a stage missing here
+    /// fails validation.
     pub visibility: wgpu::ShaderStages,
-    /// Lists the lights by name; the default is none. A light named `sun` is sampled by `shadow_sun(position, normal)`,
-    /// and a pool named `lamps` by `shadow_lamps(index, position, normal)` with the index of the light's slot. For an
-    /// index that no slot has, the result is lit. [`BindingsError::Name`] states which names are permitted.
+    /// Lists the lights by name; the default is none. A light named `sun` is sampled by
+    /// `shadow_sun(position, normal)`, and a pool named `lamps` by
+    /// `shadow_lamps(index, position, normal)` with the index of the light's slot. For an index
+    /// that no slot has, the result is lit. [`BindingsError::Name`] states which names are
+    /// permitted.
     pub lights: &'a [(&'a str, &'a ShadowMaps)],
 }
 
@@ -41,23 +44,27 @@ impl Default for ShadowBindingsDescriptor<'_> {
 
 /// Holds a bind group with the maps of a set of lights, and the WGSL that samples them.
 ///
-/// The WGSL has one function per light, `shadow_NAME(position: vec3<f32>, normal: vec3<f32>) -> f32` (for pools
-/// `shadow_NAME(index: u32, position: vec3<f32>, normal: vec3<f32>) -> f32`). It returns the visibility in [0, 1] of
-/// the light from `position` (render space) on a surface with the geometric normal `normal` (unit length, on the side
-/// that is shaded). Where no map covers the position, it returns 1.
+/// The WGSL has one function per light,
+/// `shadow_NAME(position: vec3<f32>, normal: vec3<f32>) -> f32` (for pools
+/// `shadow_NAME(index: u32, position: vec3<f32>, normal: vec3<f32>) -> f32`). It returns the
+/// visibility in [0, 1] of the light from `position` (render space) on a surface with the geometric
+/// normal `normal` (unit length, on the side that is shaded). Where no map covers the position, it
+/// returns 1.
 ///
-/// `shadow_geometric_normal(position: vec3<f32>, toward_viewer: vec3<f32>) -> vec3<f32>` returns such a normal,
-/// computed from screen-space derivatives, for fragment shaders in uniform control flow. `toward_viewer` is a vector of
-/// any length but zero from the surface to the side that is looked at: `camera_position - position`, or the reverse of
-/// an orthographic camera's view direction. An interpolated shading normal also works, but fails at silhouettes. The
-/// result is the same for projections that mirror.
+/// `shadow_geometric_normal(position: vec3<f32>, toward_viewer: vec3<f32>) -> vec3<f32>` returns
+/// such a normal, computed from screen-space derivatives, for fragment shaders in uniform control
+/// flow. `toward_viewer` is a vector of any length but zero from the surface to the side that is
+/// looked at: `camera_position - position`, or the reverse of an orthographic camera's view
+/// direction. An interpolated shading normal also works, but fails at silhouettes. The result is
+/// the same for projections that mirror.
 ///
-/// `shadow_view_NAME(position)` (for pools with the index as its first argument) returns the layer of the view that
-/// covers a position, or the number of layers where none does. It serves to tint cascades or faces.
+/// `shadow_view_NAME(position)` (for pools with the index as its first argument) returns the layer
+/// of the view that covers a position, or the number of layers where none does. It serves to tint
+/// cascades or faces.
 ///
-/// The variables `shadow_map_NAME` and `shadow_views_NAME` are the light's texture (`texture_depth_2d_array`, but see
-/// [`ShadowBindings::new`]) and its uniforms (`array<ShadowViewUniform, N>`), for engines that add lookups of their
-/// own.
+/// The variables `shadow_map_NAME` and `shadow_views_NAME` are the light's texture
+/// (`texture_depth_2d_array`, but see [`ShadowBindings::new`]) and its uniforms
+/// (`array<ShadowViewUniform, N>`), for engines that add lookups of their own.
 #[derive(Debug)]
 pub struct ShadowBindings {
     layout: wgpu::BindGroupLayout,
@@ -67,15 +74,18 @@ pub struct ShadowBindings {
 }
 
 impl ShadowBindings {
-    /// Creates layout, bind group and WGSL. This is needed once for a set of lights; frames need no update.
+    /// Creates layout, bind group and WGSL. This is needed once for a set of lights; frames need no
+    /// update.
     ///
-    /// Where the device's shaders cannot gather (OpenGL ES 3.0, WebGL 2), the maps of all filters but
-    /// [`Filter::Hardware`](crate::Filter::Hardware) are bound as `texture_2d_array<f32>`, and each gather becomes four
-    /// samples: visibilities are the same, at up to four times as many texture instructions.
+    /// Where the device's shaders cannot gather (OpenGL ES 3.0, WebGL 2), the maps of all filters
+    /// but [`Filter::Hardware`](crate::Filter::Hardware) are bound as `texture_2d_array<f32>`, and
+    /// each gather becomes four samples: visibilities are the same, at up to four times as many
+    /// texture instructions.
     ///
     /// # Errors
-    /// Returns [`BindingsError`] for names that are not permitted or not distinct, for lights that exceed the device's
-    /// limits, for lights of another device, and for a device that is lost or out of memory.
+    /// Returns [`BindingsError`] for names that are not permitted or not distinct, for lights that
+    /// exceed the device's limits, for lights of another device, and for a device that is lost or
+    /// out of memory.
     pub fn new(
         device: &wgpu::Device,
         descriptor: &ShadowBindingsDescriptor<'_>,
@@ -120,12 +130,14 @@ impl ShadowBindings {
         })
     }
 
-    /// Returns the layout of the bind group. The engine's pipeline layouts need it at index [`ShadowBindings::group`].
+    /// Returns the layout of the bind group. The engine's pipeline layouts need it at index
+    /// [`ShadowBindings::group`].
     pub fn layout(&self) -> &wgpu::BindGroupLayout {
         &self.layout
     }
 
-    /// Returns the bind group, to be set at index [`ShadowBindings::group`] while surfaces are shaded.
+    /// Returns the bind group, to be set at index [`ShadowBindings::group`] while surfaces are
+    /// shaded.
     pub fn bind_group(&self) -> &wgpu::BindGroup {
         &self.bind_group
     }
@@ -135,8 +147,8 @@ impl ShadowBindings {
         self.group
     }
 
-    /// Returns the WGSL for exactly this set of lights. It contains no directives and can be put before or after the
-    /// engine's own.
+    /// Returns the WGSL for exactly this set of lights. It contains no directives and can be put
+    /// before or after the engine's own.
     pub fn wgsl(&self) -> &str {
         &self.wgsl
     }
@@ -165,8 +177,8 @@ fn check_names(lights: &NamedMaps<'_>) -> Result<(), BindingsError> {
     Ok(())
 }
 
-/// Returns whether an identifier that is emitted for a light of this name could coincide with one of the library's own:
-/// of a module, a sampler, or the map, views or functions of another light.
+/// Returns whether an identifier that is emitted for a light of this name could coincide with one
+/// of the library's own: of a module, a sampler, or the map, views or functions of another light.
 fn is_taken(name: &str) -> bool {
     const PREFIXES: [&str; 6] = [
         "view_",

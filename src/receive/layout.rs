@@ -1,5 +1,5 @@
-//! Defines the bind group of a set of lights: first the samplers that their filters use, then the uniforms and the map
-//! of each light.
+//! Defines the bind group of a set of lights: first the samplers that their filters use, then the
+//! uniforms and the map of each light.
 
 use crate::receive::filter::FilterSampler;
 use crate::receive::sampled_maps::SampledMaps;
@@ -9,8 +9,8 @@ use crate::receive::view_uniform_bytes;
 /// Holds the lights of a set, each with the name in which its WGSL functions end.
 pub(crate) type NamedMaps<'a> = [(&'a str, SampledMaps<'a>)];
 
-/// Returns the samplers that the filters of `lights` use. A sampler's index in the list is the number of its
-/// binding.
+/// Returns the samplers that the filters of `lights` use. A sampler's index in the list is the
+/// number of its binding.
 pub(crate) fn used_samplers(lights: &NamedMaps<'_>) -> Vec<FilterSampler> {
     [FilterSampler::Comparison, FilterSampler::Point]
         .into_iter()
@@ -22,13 +22,14 @@ pub(crate) fn used_samplers(lights: &NamedMaps<'_>) -> Vec<FilterSampler> {
         .collect()
 }
 
-/// Returns the number of the binding with the uniforms of the light at index `light`; the next binding is its map.
+/// Returns the number of the binding with the uniforms of the light at index `light`; the next
+/// binding is its map.
 pub(crate) fn views_binding(samplers: &[FilterSampler], light: usize) -> u32 {
     (samplers.len() + 2 * light) as u32
 }
 
-/// Returns how a light's map is bound on a device whose shaders read single texels by `access`. A filter that uses the
-/// comparison sampler needs a depth texture on every device.
+/// Returns how a light's map is bound on a device whose shaders read single texels by `access`. A
+/// filter that uses the comparison sampler needs a depth texture on every device.
 pub(crate) fn map_access(maps: &SampledMaps<'_>, access: TexelAccess) -> TexelAccess {
     match maps.sampling.filter.wgsl().1 {
         FilterSampler::Comparison => TexelAccess::Gathers,
@@ -82,7 +83,8 @@ pub(crate) fn create_layout(
     })
 }
 
-/// Creates the samplers and the bind group for `layout`. The caller's error scope captures device errors.
+/// Creates the samplers and the bind group for `layout`. The caller's error scope captures device
+/// errors.
 pub(crate) fn create_bind_group(
     device: &wgpu::Device,
     label: Option<&str>,
@@ -120,7 +122,8 @@ pub(crate) fn create_bind_group(
     })
 }
 
-/// Creates a sampler that clamps to the edge. It is linear for comparisons, and nearest for gathers and single samples.
+/// Creates a sampler that clamps to the edge. It is linear for comparisons, and nearest for gathers
+/// and single samples.
 fn create_sampler(device: &wgpu::Device, sampler: FilterSampler) -> wgpu::Sampler {
     let comparison = sampler == FilterSampler::Comparison;
     let filter = if comparison {

@@ -5,18 +5,8 @@ use glam::{DVec2, DVec3, Vec3};
 use crate::cast::ViewDraws;
 use crate::fit::{LightAxes, MapRect, ShadowView, ViewPlacement};
 use crate::receive::bias::lateral_error_texels;
+use crate::receive::layer_state::{ALL_TEXELS, LayerState, NO_LIMIT};
 use crate::receive::uniforms::{ROUNDING_TEXELS, Sampling, ShadowMapping, ShadowViewUniform};
-
-/// Is the uniform's `limit` for shadows that end where the maps end: their weight is one everywhere.
-pub(crate) const NO_LIMIT: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
-
-/// Is the region of texels in which positions have shadows, for shadows that end where the map ends.
-pub(crate) const ALL_TEXELS: [f32; 4] = [
-    f32::NEG_INFINITY,
-    f32::NEG_INFINITY,
-    f32::INFINITY,
-    f32::INFINITY,
-];
 
 /// Returns a range for the uniforms. An infinite one becomes a distance that no position exceeds and
 /// whose square is finite.
@@ -43,6 +33,15 @@ pub(crate) fn empty_view_uniform(
         limit: NO_LIMIT,
         ..bytemuck::Zeroable::zeroed()
     }
+}
+
+/// Returns the views of each light in turn.
+pub(crate) fn lights(
+    views: &[ViewDraws],
+    views_per_light: u32,
+) -> impl Iterator<Item = &[ViewDraws]> {
+    let light = move |draws: &ViewDraws| draws.view.index() / views_per_light;
+    views.chunk_by(move |a, b| light(a) == light(b))
 }
 
 /// Holds what the uniforms of all views of a light have in common, so that shaders can read it from
@@ -87,6 +86,39 @@ impl LightUniforms {
                 view.over_depths_from(view.render_reach() + 2.5 * apart.length())
             }
             ViewPlacement::Perspective { .. } => view.over_depths_from(self.local_render_reach),
+        }
+    }
+
+    /// Writes the uniforms of all views of a light. `light` and `layers` are in the order of views,
+    /// and `layer_of` returns the layer of a view. Shaders read what the views of a light have in
+    /// common from any of them, those into which nothing casts included.
+    pub fn fill(
+        &self,
+        uniforms: &mut [ShadowViewUniform],
+        light: &[ViewDraws],
+        views_per_light: u32,
+        layers: &[LayerState],
+        sampling: &Sampling,
+        layer_of: impl Fn(u32) -> u32,
+    ) {
+        let uniform_of = |view: &ShadowView| {
+            let found = layers.binary_search_by_key(&view.index(), |base| base.index);
+            let base = found.ok().map(|index| &layers[index]);
+            let shadowed_texels = base.map_or(ALL_TEXELS, |base| base.shadowed_texels);
+            self.view(view, sampling, shadowed_texels)
+        };
+        let first = light[0].view.index();
+        let first = first - first % views_per_light;
+        let common = uniform_of(&light[0].view);
+        for index in first..first + views_per_light {
+            uniforms[index as usize] = ShadowViewUniform {
+                mapping: common.mapping.of_empty_view(),
+                layer: layer_of(index),
+                ..common
+            };
+        }
+        for draws in light {
+            uniforms[draws.view.index() as usize] = uniform_of(&draws.view);
         }
     }
 

@@ -6,11 +6,12 @@ use crate::cast::{FrameCasters, Plan, Recorder, RecorderKind, ViewDraws};
 use crate::error::DeviceError;
 use crate::gpu::{DepthMap, UploadBuffer, capture_device_errors};
 use crate::receive::layer_limits::check_layers;
-use crate::receive::light_uniforms::{ALL_TEXELS, LightUniforms, NO_LIMIT, empty_view_uniform};
+use crate::receive::layer_state::LayerState;
+use crate::receive::light_uniforms::{LightUniforms, empty_view_uniform, lights};
 use crate::receive::report::{ShadowReport, ViewReport, ViewStatus};
 use crate::receive::sampled_maps::{SampledMaps, Selection};
 use crate::receive::{Sampling, ShadowViewUniform, view_uniform_bytes};
-use crate::{ShadowError, ShadowView, report::SliceReport};
+use crate::{ShadowError, ShadowView};
 
 /// Holds what shaders sample of a light: its depth texture and its uniform buffer, with the settings that determine how
 /// they are sampled.
@@ -63,41 +64,6 @@ pub(crate) struct ShadowMapsDescriptor<'a> {
     pub shares_layer: bool,
     /// States that the maps are those of a pool, whose WGSL function takes the index of a light.
     pub indexed: bool,
-}
-
-/// Describes a view of a light of this frame, with the values that its uniform has where nothing casts into it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct LayerState {
-    /// Is the index of the view, which is also its layer unless views share one.
-    pub index: u32,
-    /// Is the position of a local light; zero for a directional one.
-    pub anchor_render: Vec3,
-    /// Is the world distance beyond which the light does not shine; infinite for a directional one.
-    pub range_world: f64,
-    /// Is where the light's shadows end, as the uniform has it.
-    pub limit: [f32; 4],
-    /// Bounds the texels of the view in which positions have shadows, in addition to its bounds:
-    /// least x and y, greatest x and y.
-    pub shadowed_texels: [f32; 4],
-    /// States that the layer needed drawing and was deferred.
-    pub deferred: bool,
-    /// Describes the slice of a camera's view that the layer covers as a cascade.
-    pub slice: Option<SliceReport>,
-}
-
-impl LayerState {
-    /// Returns the state of a layer of a directional light without a limit to its shadows.
-    pub fn directional(index: u32, slice: Option<SliceReport>) -> Self {
-        Self {
-            index,
-            anchor_render: Vec3::ZERO,
-            range_world: f64::INFINITY,
-            limit: NO_LIMIT,
-            shadowed_texels: ALL_TEXELS,
-            deferred: false,
-            slice,
-        }
-    }
 }
 
 /// Holds the input of a frame for the maps.
@@ -323,27 +289,14 @@ impl ShadowMaps {
             uniforms[base.index as usize] = empty_view_uniform(layer, anchor, range);
         }
         for light in lights(views, self.views_per_light) {
-            let shared = LightUniforms::of(light);
-            let shadowed = |view: &ShadowView| {
-                let base = layers.iter().find(|base| base.index == view.index());
-                base.map_or(ALL_TEXELS, |base| base.shadowed_texels)
-            };
-            let uniform_of = |view: &ShadowView| shared.view(view, &self.sampling, shadowed(view));
-            // Shaders read what the views of a light have in common from any of them, those into
-            // which nothing casts included.
-            let first = light[0].view.index();
-            let first = first - first % self.views_per_light;
-            let common = uniform_of(&light[0].view);
-            for index in first..first + self.views_per_light {
-                uniforms[index as usize] = ShadowViewUniform {
-                    mapping: common.mapping.of_empty_view(),
-                    layer: layer_of(index),
-                    ..common
-                };
-            }
-            for draws in light {
-                uniforms[draws.view.index() as usize] = uniform_of(&draws.view);
-            }
+            LightUniforms::of(light).fill(
+                &mut uniforms,
+                light,
+                self.views_per_light,
+                layers,
+                &self.sampling,
+                &layer_of,
+            );
         }
         for base in layers {
             uniforms[base.index as usize].limit = base.limit;
@@ -401,12 +354,6 @@ impl ShadowMaps {
 /// Returns a function from the index of a view to its layer.
 fn layer_of(shares_layer: bool) -> impl Fn(u32) -> u32 {
     move |index| if shares_layer { 0 } else { index }
-}
-
-/// Returns the views of each light in turn.
-fn lights(views: &[ViewDraws], views_per_light: u32) -> impl Iterator<Item = &[ViewDraws]> {
-    let light = move |draws: &ViewDraws| draws.view.index() / views_per_light;
-    views.chunk_by(move |a, b| light(a) == light(b))
 }
 
 fn view_report(draws: &ViewDraws, casters: &FrameCasters<'_>) -> ViewReport {

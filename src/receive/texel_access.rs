@@ -1,5 +1,5 @@
-//! Determines how the filters that compare each texel read the texels: by gathers, or by samples where a device has no
-//! gather.
+//! Determines how the filters that compare each texel read the texels: by gathers, or by samples
+//! where a device has no gather.
 
 use crate::error::DeviceRefusal;
 use crate::gpu::{capture_device_errors, fullscreen_pipeline};
@@ -8,6 +8,8 @@ use crate::shader;
 /// Tells how shaders read single texels of a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum TexelAccess {
+    /// Gathers from a depth texture with constant offsets, by `wgsl/texels_by_offsets.wgsl`.
+    OffsetGathers,
     /// Gathers from a depth texture, by `wgsl/texels.wgsl`.
     Gathers,
     /// Samples a texture of unfilterable floats, by `wgsl/texels_by_samples.wgsl`.
@@ -15,15 +17,18 @@ pub(crate) enum TexelAccess {
 }
 
 impl TexelAccess {
-    /// Returns what shaders of `device` can do. All backends can gather except OpenGL, where GLSL ES 3.00 has no
-    /// gather. There a pipeline that gathers is created as a test, so that nothing depends on names and versions.
+    /// Returns what shaders of `device` can do. All backends can gather with offsets except OpenGL,
+    /// for which naga writes no such gather of a depth texture, and where GLSL ES 3.00 has no
+    /// gather at all. There a pipeline that gathers is created as a test, so that nothing depends
+    /// on names and versions.
     pub fn of(device: &wgpu::Device) -> Self {
         if device.adapter_info().backend != wgpu::Backend::Gl {
-            return Self::Gathers;
+            return Self::OffsetGathers;
         }
         match capture_device_errors(device, || gathering_pipeline(device)) {
             Err(DeviceRefusal::Refused(_)) => Self::Samples,
-            // A device that is lost or out of memory returns that error again when the bind group is created.
+            // A device that is lost or out of memory returns that error again when the bind group
+            // is created.
             Ok(_) | Err(_) => Self::Gathers,
         }
     }
@@ -31,6 +36,7 @@ impl TexelAccess {
     /// Returns the module that this access needs instead of the default one.
     pub const fn module(self) -> Option<&'static str> {
         match self {
+            Self::OffsetGathers => Some("texels_by_offsets"),
             Self::Gathers => None,
             Self::Samples => Some("texels_by_samples"),
         }
@@ -39,7 +45,7 @@ impl TexelAccess {
     /// Returns the map's type in WGSL, which is the module's alias `ShadowMap`.
     pub const fn map_wgsl(self) -> &'static str {
         match self {
-            Self::Gathers => "texture_depth_2d_array",
+            Self::OffsetGathers | Self::Gathers => "texture_depth_2d_array",
             Self::Samples => "texture_2d_array<f32>",
         }
     }
@@ -47,7 +53,7 @@ impl TexelAccess {
     /// Returns the map's type in a bind group layout.
     pub const fn map_binding(self) -> wgpu::BindingType {
         let sample_type = match self {
-            Self::Gathers => wgpu::TextureSampleType::Depth,
+            Self::OffsetGathers | Self::Gathers => wgpu::TextureSampleType::Depth,
             Self::Samples => wgpu::TextureSampleType::Float { filterable: false },
         };
         wgpu::BindingType::Texture {

@@ -1,5 +1,5 @@
-//! Puts numbers of any magnitude and sign, finite or not, into every field of a frame: each call returns a result or an
-//! error, never panics, and causes no error of the device.
+//! Puts numbers of any magnitude and sign, finite or not, into every field of a frame: each call
+//! returns a result or an error, never panics, and causes no error of the device.
 
 use glam::{DVec3, Mat4, Vec3, Vec4};
 use shadow_support::camera::Camera;
@@ -83,7 +83,8 @@ fn no_frame_breaks_a_sun() {
     for case in 0..600 {
         let mut numbers = Numbers {
             random: Random::new(case),
-            // Every third frame contains mostly ordinary numbers, since few would be accepted otherwise.
+            // Every third frame contains mostly ordinary numbers, since few would be accepted
+            // otherwise.
             tameness: if case % 3 == 0 { 60 } else { 6 },
         };
         let low = numbers.vector();

@@ -1,8 +1,9 @@
-//! Calls the emitted functions in render pipelines whose other bind groups contain uniform buffers of the engine.
-//! Whatever buffers precede those of the lights, an image is drawn, and always the same one.
+//! Calls the emitted functions in render pipelines whose other bind groups contain uniform buffers
+//! of the engine. Whatever buffers precede those of the lights, an image is drawn, and always the
+//! same one.
 //!
-//! Vulkan drivers have crashed here, so the drawing is done in a process of its own, and with Vulkan whatever the
-//! backend of the run.
+//! Vulkan drivers have crashed here, so the drawing is done in a process of its own, and with
+//! Vulkan whatever the backend of the run.
 
 use std::collections::BTreeSet;
 
@@ -29,7 +30,8 @@ fn sets() -> Vec<Set> {
     alike.into_iter().chain(mixed).collect()
 }
 
-/// Returns the default filter, the sampler's own, and for sets of cubes the direction-space filters.
+/// Returns the default filter, the sampler's own, and for sets of cubes the direction-space
+/// filters.
 fn filters(set: &Set) -> Vec<Filter> {
     let mut filters = vec![Filter::default(), Filter::Hardware];
     if set.iter().all(|kind| kind.has_cube()) {
@@ -38,9 +40,9 @@ fn filters(set: &Set) -> Vec<Filter> {
     filters
 }
 
-/// Lists the group of the lights and the number of engine buffers in each group before it. They cover all groups that
-/// every WebGPU device has, and put two lights of one kind at every position from the first to the eleventh of the
-/// stage's buffers.
+/// Lists the group of the lights and the number of engine buffers in each group before it. They
+/// cover all groups that every WebGPU device has, and put two lights of one kind at every position
+/// from the first to the eleventh of the stage's buffers.
 const LAYOUTS: [(u32, u32); 6] = [(0, 0), (1, 1), (2, 1), (1, 3), (3, 1), (3, 3)];
 
 /// Returns the layouts whose number of buffers a stage can have.

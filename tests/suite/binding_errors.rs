@@ -1,5 +1,5 @@
-//! Tests what `ShadowBindings`, `shader::compose` and `DebugView` refuse: each error is provoked, compared as a value,
-//! and read as a message.
+//! Tests what `ShadowBindings`, `shader::compose` and `DebugView` refuse: each error is provoked,
+//! compared as a value, and read as a message.
 
 use shadow_support::readback;
 use wgpu_shadows::{
@@ -20,7 +20,8 @@ fn tiny_sun(gpu: &Gpu, cascades: u32) -> DirectionalShadow {
     DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun")
 }
 
-/// An engine's names become WGSL identifiers, so they must be valid identifiers and must differ from the library's own.
+/// An engine's names become WGSL identifiers, so they must be valid identifiers and must differ
+/// from the library's own.
 #[test]
 fn light_names_that_are_no_identifiers() {
     let gpu = gpu();
@@ -83,8 +84,8 @@ fn light_names_that_are_no_identifiers() {
     );
 }
 
-/// Names that would coincide with the library's own variables or with those of another light are refused or spelled
-/// differently: what is emitted compiles.
+/// Names that would coincide with the library's own variables or with those of another light are
+/// refused or spelled differently: what is emitted compiles.
 #[test]
 fn light_names_that_meet_others() {
     let gpu = gpu();
@@ -138,7 +139,8 @@ fn bindings_beyond_the_devices_limits() {
         format!("{message}{maximum}, got {group}")
     );
 
-    // A stage has the fewest bindings for uniform buffers: as many lights are accepted, and one more is refused.
+    // A stage has the fewest bindings for uniform buffers: as many lights are accepted, and one
+    // more is refused.
     let most = limits.max_uniform_buffers_per_shader_stage as usize;
     let letter = |index: usize| char::from(b'a' + (index % 26) as u8);
     let names: Vec<_> = (0..=most)

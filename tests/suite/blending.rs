@@ -1,5 +1,5 @@
-//! Tests cascades that blend into each other: there is no step at any border, and the weighted mean is that of the CPU
-//! reference.
+//! Tests cascades that blend into each other: there is no step at any border, and the weighted mean
+//! is that of the CPU reference.
 
 use glam::{DVec3, Vec3};
 use shadow_support::camera::Camera;
@@ -19,8 +19,8 @@ use crate::fixtures::scene::Scene;
 
 const MAP_SIZE: u32 = 128;
 
-/// Returns planks that float over the floor, across the direction of view, under a sun whose shadows extend along that
-/// direction: every border between cascades crosses edges.
+/// Returns planks that float over the floor, across the direction of view, under a sun whose
+/// shadows extend along that direction: every border between cascades crosses edges.
 fn planks() -> Scene {
     let mut meshes: Vec<_> = (0..6)
         .map(|plank| {
@@ -86,9 +86,10 @@ fn steepest(probe: &SunProbe, lines: &[Vec<Point>]) -> f32 {
         .fold(0.0, f32::max)
 }
 
-/// Along the direction of view a step of `d` world units changes a visibility by at most `3 d / s` for each axis of the
-/// finest map, with texels of `s` (the default's sharpness, a ramp that is one texel wide), and the weights of two
-/// cascades by `d / (blend N s)` each. Without blending, the borders show as larger steps.
+/// Along the direction of view a step of `d` world units changes a visibility by at most `3 d / s`
+/// for each axis of the finest map, with texels of `s` (the default's sharpness, a ramp that is one
+/// texel wide), and the weights of two cascades by `d / (blend N s)` each. Without blending, the
+/// borders show as larger steps.
 #[test]
 fn no_border_is_a_step() {
     let step = 1.0 / 4096.0;
@@ -111,9 +112,9 @@ fn no_border_is_a_step() {
     );
 }
 
-/// The device's results are those of the CPU reference, from the maps read back, to `1e-3`: texel coordinates err by
-/// `14uN`, 1e-4 of a texel, a visibility changes by no more than six per texel, and no comparison is a tie on a floor
-/// under floating planks.
+/// The device's results are those of the CPU reference, from the maps read back, to `1e-3`: texel
+/// coordinates err by `14uN`, 1e-4 of a texel, a visibility changes by no more than six per texel,
+/// and no comparison is a tie on a floor under floating planks.
 #[test]
 fn the_mean_is_that_of_the_reference() {
     let (shadow, probe) = sun(0.2);
@@ -152,7 +153,8 @@ fn the_mean_is_that_of_the_reference() {
     assert!(mixed > 200, "{mixed} of {all} lie between two maps");
 }
 
-/// Lights that do not blend have no cost for it: their WGSL contains no weights, nor does that of a single cascade.
+/// Lights that do not blend have no cost for it: their WGSL contains no weights, nor does that of a
+/// single cascade.
 #[test]
 fn only_cascades_that_blend_have_weights() {
     for (cascades, blend, weighted) in [(3, 0.0, false), (1, 0.2, false), (3, 0.2, true)] {

@@ -1,5 +1,5 @@
-//! Tests boxes made of numbers of which some are NaN: a broken box stays broken, in whatever order it is combined with
-//! others.
+//! Tests boxes made of numbers of which some are NaN: a broken box stays broken, in whatever order
+//! it is combined with others.
 
 use glam::{Mat4, Vec3};
 use wgpu_shadows::Aabb;
@@ -61,8 +61,8 @@ fn a_union_with_a_broken_box_is_broken() {
     }
 }
 
-/// A matrix with a NaN or an infinity in any element of its upper three rows breaks a box around the origin, and leaves
-/// an empty box empty.
+/// A matrix with a NaN or an infinity in any element of its upper three rows breaks a box around
+/// the origin, and leaves an empty box empty.
 #[test]
 fn a_broken_matrix_breaks_boxes() {
     let around = Aabb::new(Vec3::new(-1.0, -2.0, -3.0), Vec3::new(1.0, 2.0, 3.0));

@@ -1,4 +1,5 @@
-//! Tests `DebugView::draw_cascades`: each pixel has the colour of the view that covers what is seen there.
+//! Tests `DebugView::draw_cascades`: each pixel has the colour of the view that covers what is seen
+//! there.
 
 use glam::{DVec3, DVec4, Mat4};
 use shadow_support::camera::Camera;
@@ -25,9 +26,9 @@ const TINTS: [[f64; 3]; 4] = [
     [0.6, 0.6, 0.6],
 ];
 
-/// On planes at several depths, every pixel has the colour of the first cascade that covers its position in f64.
-/// Positions within `1e-3` of their own magnitude of a border are undecided: matrices of f32 err by 1e-6 of a distance
-/// of some tens.
+/// On planes at several depths, every pixel has the colour of the first cascade that covers its
+/// position in f64. Positions within `1e-3` of their own magnitude of a border are undecided:
+/// matrices of f32 err by 1e-6 of a distance of some tens.
 #[test]
 fn pixels_have_the_colours_of_their_cascades() {
     let gpu = gpu();
@@ -105,9 +106,9 @@ fn pixels_have_the_colours_of_their_cascades() {
     }
 }
 
-/// A target that cannot be blended can show maps but no tints; a texture that is not a depth texture is refused. The
-/// pass can be used further. This runs on Vulkan, since the OpenGL driver has no format that is renderable and cannot
-/// be blended.
+/// A target that cannot be blended can show maps but no tints; a texture that is not a depth
+/// texture is refused. The pass can be used further. This runs on Vulkan, since the OpenGL driver
+/// has no format that is renderable and cannot be blended.
 #[test]
 fn what_cannot_be_tinted_is_refused() {
     let gpu = vulkan();

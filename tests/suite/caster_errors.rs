@@ -1,4 +1,5 @@
-//! Tests what `CasterPipeline` refuses: each error is provoked, compared as a value, and read as a message.
+//! Tests what `CasterPipeline` refuses: each error is provoked, compared as a value, and read as a
+//! message.
 
 use wgpu_shadows::{
     CasterPipeline, caster::CasterPipelineDescriptor, caster::CasterVertex, caster::ModelTransform,
@@ -133,8 +134,8 @@ fn topologies_that_are_no_triangles() {
     );
 }
 
-/// What only the device can judge is returned with the device's own message, for every way in which the engine's WGSL
-/// can be wrong.
+/// What only the device can judge is returned with the device's own message, for every way in which
+/// the engine's WGSL can be wrong.
 #[test]
 fn wgsl_that_the_device_refuses() {
     let good = "@vertex fn v(@location(0) p: vec3<f32>) -> @builtin(position) vec4<f32> { return shadow_caster_clip(p); }";
@@ -183,7 +184,8 @@ fn wgsl_that_the_device_refuses() {
     }
 }
 
-/// wgpu itself panics if there are more bind groups than it has room for, whatever the device's limits.
+/// wgpu itself panics if there are more bind groups than it has room for, whatever the device's
+/// limits.
 #[test]
 fn more_bind_groups_than_the_device_takes() {
     let gpu = gpu();
@@ -270,7 +272,8 @@ fn more_vertex_buffers_than_the_device_takes() {
     }
 }
 
-/// A primitive state that rasterizes other than a depth map needs is refused, whatever features the device has.
+/// A primitive state that rasterizes other than a depth map needs is refused, whatever features the
+/// device has.
 #[test]
 fn primitives_that_give_no_depth_map() {
     let plain = wgpu::PrimitiveState::default();

@@ -1,5 +1,5 @@
-//! Tests the built-in vertex stage: every position format, both model transforms, strips, and which faces are left out
-//! of the map.
+//! Tests the built-in vertex stage: every position format, both model transforms, strips, and which
+//! faces are left out of the map.
 
 use glam::{DVec3, Mat4, Quat, Vec3, Vec4};
 use shadow_support::mesh::Mesh;
@@ -130,7 +130,8 @@ fn encoded(format: VertexFormat, corner: [bool; 3]) -> Vec<u8> {
         .collect()
 }
 
-/// Two triangles that touch all of the formats' extremes have the same depths for each format, bit for bit.
+/// Two triangles that touch all of the formats' extremes have the same depths for each format, bit
+/// for bit.
 #[test]
 fn every_position_format_draws_the_same() {
     use VertexFormat as F;
@@ -194,8 +195,8 @@ fn vertex_bytes(positions: &[Vec3]) -> Vec<u8> {
     bytemuck::cast_slice(positions).to_vec()
 }
 
-/// A matrix of halves and whole numbers gives the same bits in the shader as on the CPU, wherever it lies in its
-/// buffer.
+/// A matrix of halves and whole numbers gives the same bits in the shader as on the CPU, wherever
+/// it lies in its buffer.
 #[test]
 fn an_instance_matrix_moves_what_identity_leaves() {
     let gpu = gpu();
@@ -242,8 +243,8 @@ fn an_instance_matrix_moves_what_identity_leaves() {
     }
 }
 
-/// Two level quads as one strip with a restart between them give the same depths as the same triangles as a list.
-/// (wgpu's OpenGL backend does not restart strips.)
+/// Two level quads as one strip with a restart between them give the same depths as the same
+/// triangles as a list. (wgpu's OpenGL backend does not restart strips.)
 #[test]
 fn strips_restart() {
     let gpu = vulkan();
@@ -310,8 +311,9 @@ fn middle() -> usize {
     (MAP_SIZE / 2 * MAP_SIZE + MAP_SIZE / 2) as usize
 }
 
-/// The light sees the upper face first; without front faces, the map contains the lower one. A transform that mirrors
-/// changes neither, whether the mesh was created with it or received it later.
+/// The light sees the upper face first; without front faces, the map contains the lower one. A
+/// transform that mirrors changes neither, whether the mesh was created with it or received it
+/// later.
 #[test]
 fn culling_takes_the_faces_it_names() {
     use wgpu::{Face, FrontFace};
@@ -345,7 +347,8 @@ fn culling_takes_the_faces_it_names() {
         let pipeline = pipeline(gpu, &descriptor);
         let assert_height = |caster: &MeshCaster, what: &str| {
             let found = middle_height(gpu, caster);
-            // The tolerance is a few ulps of 2^-24, for depths of about a half over a range of two units.
+            // The tolerance is a few ulps of 2^-24, for depths of about a half over a range of two
+            // units.
             let error = (found - height).abs();
             assert!(error < 1e-5, "{cull:?} {front_face:?} {what}: {found}");
         };
@@ -362,7 +365,8 @@ fn culling_takes_the_faces_it_names() {
     }
 }
 
-/// The tests' own meshes face outward, so that what the tests find about culling holds for closed solids.
+/// The tests' own meshes face outward, so that what the tests find about culling holds for closed
+/// solids.
 #[test]
 fn generated_solids_face_outward() {
     let center = Vec3::new(0.5, 2.0, -1.0);

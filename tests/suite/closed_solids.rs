@@ -1,4 +1,5 @@
-//! Tests which meshes are closed solids, and that the back faces of these make no difference to any map.
+//! Tests which meshes are closed solids, and that the back faces of these make no difference to any
+//! map.
 
 use glam::{DVec3, Mat4, Quat, Vec3};
 use shadow_support::mesh::Mesh;
@@ -50,8 +51,8 @@ fn solids_are_told_from_all_else() {
     let mut turned = cube.clone();
     turned.indices.swap(0, 1);
     assert!(!is_closed(&turned), "a triangle is turned over");
-    // The ball's seam is open by the rounding of its sines, which is small enough to count as closed; a gap of a
-    // thousandth of the ball is not.
+    // The ball's seam is open by the rounding of its sines, which is small enough to count as
+    // closed; a gap of a thousandth of the ball is not.
     let seam = ball.positions.iter().filter(|p| p.z.abs() < 1e-6).count();
     assert!(seam > 8);
     let mut split = ball.clone();
@@ -62,7 +63,8 @@ fn solids_are_told_from_all_else() {
     let mut wild = cube.clone();
     wild.indices[4] = 8;
     assert!(!is_closed(&wild), "an index beyond the corners");
-    // Separate corners for every face, as for flat shading, and triangles without area change nothing.
+    // Separate corners for every face, as for flat shading, and triangles without area change
+    // nothing.
     let flat = Mesh {
         positions: cube
             .indices
@@ -72,8 +74,8 @@ fn solids_are_told_from_all_else() {
         indices: (0..36).chain([3, 3, 7]).collect(),
     };
     assert!(is_closed(&flat));
-    // A distant position and the two signs of zero change nothing either; numbers that are not finite change only the
-    // result.
+    // A distant position and the two signs of zero change nothing either; numbers that are not
+    // finite change only the result.
     let far = |mesh: &Mesh, shift: Vec3| Mesh {
         positions: mesh.positions.iter().map(|p| *p + shift).collect(),
         indices: mesh.indices.clone(),
@@ -101,8 +103,8 @@ fn pipeline(gpu: &Gpu, cull: Option<wgpu::Face>) -> CasterPipeline {
     .expect("a valid pipeline")
 }
 
-/// Rotated, stretched and mirrored solids above each other are drawn with and without their back faces: the maps of a
-/// sun and of a point light are the same, bit for bit.
+/// Rotated, stretched and mirrored solids above each other are drawn with and without their back
+/// faces: the maps of a sun and of a point light are the same, bit for bit.
 #[test]
 fn back_faces_of_solids_change_no_map() {
     let gpu = gpu();

@@ -1,5 +1,5 @@
-//! Tests contact shadows: objects that lie on a surface cast onto it as soon as they are thicker than the gap that the
-//! report gives.
+//! Tests contact shadows: objects that lie on a surface cast onto it as soon as they are thicker
+//! than the gap that the report gives.
 
 use glam::{DVec3, Vec3};
 use shadow_support::mesh::Mesh;
@@ -47,8 +47,8 @@ const PLAIN: Setting = Setting {
     half: 4.0,
 };
 
-/// Lists both formats over short and long ranges. In the longest range the step of 16 bits is 1.5, and texels are no
-/// finer than 1/20; there the sheets are larger.
+/// Lists both formats over short and long ranges. In the longest range the step of 16 bits is 1.5,
+/// and texels are no finer than 1/20; there the sheets are larger.
 const SETTINGS: [Setting; 4] = [
     PLAIN,
     Setting {
@@ -69,7 +69,8 @@ const SETTINGS: [Setting; 4] = [
     },
 ];
 
-/// Holds a sheet under a vertical light, and a plate parallel to it, `thickness` above it along the normal.
+/// Holds a sheet under a vertical light, and a plate parallel to it, `thickness` above it along the
+/// normal.
 struct Plate {
     name: String,
     scene: Scene,
@@ -110,10 +111,11 @@ impl Plate {
         }
     }
 
-    /// Draws the plate on its sheet, and returns the gap that the report gives and the visibilities of the receivers
-    /// under the plate.
+    /// Draws the plate on its sheet, and returns the gap that the report gives and the visibilities
+    /// of the receivers under the plate.
     ///
-    /// What is covered reaches at least `range` down from the highest point, so the map's depth range is no less.
+    /// What is covered reaches at least `range` down from the highest point, so the map's depth
+    /// range is no less.
     fn look(
         &self,
         gpu: &Gpu,
@@ -138,8 +140,8 @@ impl Plate {
     }
 }
 
-/// Returns the largest visibility of the receivers under a plate of `share` times the reported gap, at each of the
-/// angles.
+/// Returns the largest visibility of the receivers under a plate of `share` times the reported gap,
+/// at each of the angles.
 fn brightest(
     (filter, bias): (Filter, Bias),
     setting: Setting,
@@ -157,8 +159,8 @@ fn brightest(
     let mut shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");
     let probe = SunProbe::new(gpu, &shadow);
     let look = |&angle: &(f64, f64)| {
-        // The light-space bounds, and with them the gap, are those of the sheet, so a first frame with any plate gives
-        // them.
+        // The light-space bounds, and with them the gap, are those of the sheet, so a first frame
+        // with any plate gives them.
         let first = Plate::new(gpu, setting.half, angle, 1e-3);
         let (gap, _) = first.look(gpu, &mut shadow, &probe, setting.range);
         let plate = Plate::new(gpu, setting.half, angle, gap * share);
@@ -169,8 +171,8 @@ fn brightest(
     angles.iter().map(look).collect()
 }
 
-/// "Above this height a caster on a surface always casts": no receiver under the plate is lit, at any angle, in any
-/// depth range of either format.
+/// "Above this height a caster on a surface always casts": no receiver under the plate is lit, at
+/// any angle, in any depth range of either format.
 #[test]
 fn a_plate_thicker_than_the_reported_gap_always_casts() {
     let mut angles = Vec::new();
@@ -213,9 +215,9 @@ fn a_plate_thicker_than_the_reported_gap_always_casts() {
     );
 }
 
-/// The gap is given for the worst angle, grazing and along the diagonal of the texels. There light comes through under
-/// a plate of half the height, so the report does not exaggerate. (That is not so for sharpened filters, whose
-/// outermost texels have no weight.)
+/// The gap is given for the worst angle, grazing and along the diagonal of the texels. There light
+/// comes through under a plate of half the height, so the report does not exaggerate. (That is not
+/// so for sharpened filters, whose outermost texels have no weight.)
 #[test]
 fn a_plate_of_half_the_reported_gap_lets_light_through_at_the_worst_angle() {
     let mut failures = Vec::new();

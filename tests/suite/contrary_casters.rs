@@ -17,7 +17,8 @@ use crate::fixtures::probe::record;
 use crate::fixtures::scene::default_pipeline;
 use crate::fixtures::slabs::{assert_same, frame, fresh_map, slab, sun};
 
-/// Is a mesh with two pipelines that it returns in turn, one of which is made for maps of another format.
+/// Is a mesh with two pipelines that it returns in turn, one of which is made for maps of another
+/// format.
 struct Fickle {
     mesh: MeshCaster,
     other_pipeline: CasterPipeline,
@@ -42,7 +43,8 @@ impl ShadowCaster for Fickle {
     }
 }
 
-/// If the pipeline differs between the check and the draw, the frame is refused, or the map contains everything.
+/// If the pipeline differs between the check and the draw, the frame is refused, or the map
+/// contains everything.
 #[test]
 fn casters_that_change_their_mind() {
     let gpu = gpu();
@@ -155,7 +157,8 @@ impl ShadowCaster for Panicking {
     }
 }
 
-/// An engine that catches the panic of one caster continues with shadows that are correct in the next frame.
+/// An engine that catches the panic of one caster continues with shadows that are correct in the
+/// next frame.
 #[test]
 fn a_caster_that_panics_leaves_nothing_behind() {
     let gpu = gpu();
@@ -206,8 +209,8 @@ fn pipelines_of_another_device() {
     assert_eq!(report.views[0].status, ViewStatus::Drawn);
 }
 
-/// If two frames are recorded before either is submitted, each shows the mesh where it was when that frame was
-/// recorded.
+/// If two frames are recorded before either is submitted, each shows the mesh where it was when
+/// that frame was recorded.
 #[test]
 fn two_frames_before_one_submission() {
     let gpu = gpu();

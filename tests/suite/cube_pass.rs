@@ -1,5 +1,5 @@
-//! Tests that one multiview pass over the six faces of a point light gives the depths of a pass for each face, bit for
-//! bit.
+//! Tests that one multiview pass over the six faces of a point light gives the depths of a pass for
+//! each face, bit for bit.
 
 use glam::{DVec3, Mat4, Vec3};
 use shadow_support::camera::Camera;
@@ -37,8 +37,8 @@ fn one_pass_gives_the_depths_of_a_pass_each() {
     }
 }
 
-/// Sheets, boxes and balls are at random positions, and so is the light; every other scene is seen by a camera, with a
-/// light that does not reach all of it.
+/// Sheets, boxes and balls are at random positions, and so is the light; every other scene is seen
+/// by a camera, with a light that does not reach all of it.
 #[test]
 fn random_scenes_have_the_same_depths() {
     const SCENES: u32 = 80;
@@ -76,8 +76,8 @@ fn random_scenes_have_the_same_depths() {
         let ([one, six], _) = pair.compare(&format!("scene {scene}"), light);
         in_one_pass += u32::from(one.passes < six.passes);
     }
-    // One pass is expected for all scenes that are completely seen, and for those others in which more than one face is
-    // seen and everything is within reach.
+    // One pass is expected for all scenes that are completely seen, and for those others in which
+    // more than one face is seen and everything is within reach.
     let wanted = if is_right() { SCENES / 2 } else { 0 };
     assert!(
         in_one_pass >= wanted,
@@ -87,7 +87,8 @@ fn random_scenes_have_the_same_depths() {
     assert!(is_right() || in_one_pass == 0, "{in_one_pass}");
 }
 
-/// What one pass drew is kept like what a pass for each face drew, and a change in one face redraws only that face.
+/// What one pass drew is kept like what a pass for each face drew, and a change in one face redraws
+/// only that face.
 #[test]
 fn faces_drawn_in_one_pass_are_kept_one_by_one() {
     let mut pair = Pair::new(&furnished());
@@ -113,8 +114,8 @@ fn faces_drawn_in_one_pass_are_kept_one_by_one() {
     assert_eq!(reports[0].passes, reports[1].passes);
 }
 
-/// Over frames in which everything moves, little moves, and everything moves again, the light is drawn in one pass, by
-/// copies of static-caster caches, and in one pass again.
+/// Over frames in which everything moves, little moves, and everything moves again, the light is
+/// drawn in one pass, by copies of static-caster caches, and in one pass again.
 #[test]
 fn one_pass_and_copied_layers_take_turns() {
     let mut pair = Pair::new(&furnished());
@@ -137,14 +138,14 @@ fn one_pass_and_copied_layers_take_turns() {
     assert!(copied > 0);
 }
 
-/// One pass clears the layers of faces that are empty: when these have casters again they are drawn, though nothing in
-/// them has changed.
+/// One pass clears the layers of faces that are empty: when these have casters again they are
+/// drawn, though nothing in them has changed.
 #[test]
 fn a_face_that_was_empty_for_a_frame_comes_back() {
     let mut pair = Pair::new(&furnished());
     pair.record_in_one_pass("all around", LIGHT);
-    // A camera at the light looks one way, and slightly another way the next time: some faces are empty, the others
-    // change.
+    // A camera at the light looks one way, and slightly another way the next time: some faces are
+    // empty, the others change.
     pair.each(|stage| {
         let target = LIGHT + DVec3::new(1.0, 0.9, 0.2);
         stage.camera = Some(Camera::modern(LIGHT, target, 1.0, 1.0).view());
@@ -158,8 +159,9 @@ fn a_face_that_was_empty_for_a_frame_comes_back() {
     assert!(six.views.iter().any(|v| v.status == ViewStatus::Kept));
 }
 
-/// What lies beyond the reach is not drawn into a face that the near part does not touch. Here a plate extends from the
-/// +z face, where it is near, behind what the +x face shows, and one pass would draw it there.
+/// What lies beyond the reach is not drawn into a face that the near part does not touch. Here a
+/// plate extends from the +z face, where it is near, behind what the +x face shows, and one pass
+/// would draw it there.
 #[test]
 fn casters_beyond_the_reach_take_a_pass_each() {
     let pairs_of_cubes = [
@@ -175,7 +177,8 @@ fn casters_beyond_the_reach_take_a_pass_each() {
         .map(plain)
         .collect();
     let mut pair = Pair::new(&meshes);
-    // The plate itself is too far away for the camera, so that the faces cover no more than the others need.
+    // The plate itself is too far away for the camera, so that the faces cover no more than the
+    // others need.
     let camera = Camera::modern(DVec3::ZERO, DVec3::new(1.0, 0.0, 1.0), 2.4, 1.0).view();
     pair.each(|stage| {
         stage.camera = Some(camera.with_max_distance(6.0));
@@ -187,7 +190,8 @@ fn casters_beyond_the_reach_take_a_pass_each() {
     });
     let [one, six] = pair.record("plate", DVec3::ZERO);
     assert_eq!((one.passes, six.passes), (2, 2));
-    // Without the plate one pass is used, and so it is with a floor that extends under the light as far as one can see.
+    // Without the plate one pass is used, and so it is with a floor that extends under the light as
+    // far as one can see.
     pair.each(|stage| {
         stage.casters.truncate(4);
         // The face that the plate was not drawn into would be kept.

@@ -1,4 +1,5 @@
-//! Tests when the six faces of a point light are drawn in one pass, and what the report says about it.
+//! Tests when the six faces of a point light are drawn in one pass, and what the report says about
+//! it.
 
 use glam::{DVec3, Mat4, Vec3};
 use shadow_support::mesh::Mesh;
@@ -22,7 +23,8 @@ fn the_report_tells_of_one_pass() {
     }
     let mut pair = Pair::new(&furnished());
     let [one, six] = pair.record_in_one_pass("furnished", LIGHT);
-    // Seven casters are drawn once each, with the one triangle that each reports, into all six faces.
+    // Seven casters are drawn once each, with the one triangle that each reports, into all six
+    // faces.
     assert_eq!((one.passes, one.draws(), one.triangles()), (1, 7, 42));
     assert_eq!(six.passes, 6);
     assert!(six.draws() > 7 && six.triangles() < 42, "{six:?}");
@@ -35,7 +37,8 @@ fn the_report_tells_of_one_pass() {
     }
 }
 
-/// The rule that `OmniShadow` states is tested at its border: 4000 triangles per saved pass, 96 per saved draw call.
+/// The rule that `OmniShadow` states is tested at its border: 4000 triangles per saved pass, 96 per
+/// saved draw call.
 #[test]
 fn the_rule_is_the_one_that_is_stated() {
     let mut pair = Pair::new(&furnished());
@@ -43,7 +46,8 @@ fn the_rule_is_the_one_that_is_stated() {
     let draws_saved = six.draws() - 7;
     assert!(draws_saved > 0);
     let worth = 4000 * 5 + 96 * draws_saved;
-    // Six casters report one triangle each, and the room the rest; each triangle counts for six faces.
+    // Six casters report one triangle each, and the room the rest; each triangle counts for six
+    // faces.
     for (room, passes) in [(worth.div_ceil(6) - 7, 1), (worth.div_ceil(6) - 6, 6)] {
         pair.each(|stage| {
             stage.casters[0].triangles = room;
@@ -88,8 +92,8 @@ fn meshes_are_drawn_in_one_pass_unless_they_are_dense() {
 /// Is a name and a change of the stage.
 type Change<'a> = (&'a str, &'a dyn Fn(&mut Stage<'static>));
 
-/// A caster that does not report its triangles, that depends on the view it is drawn into, or that has WGSL of the
-/// engine's own, prevents the single pass.
+/// A caster that does not report its triangles, that depends on the view it is drawn into, or that
+/// has WGSL of the engine's own, prevents the single pass.
 #[test]
 fn casters_that_one_pass_cannot_serve_take_a_pass_each() {
     let own_wgsl = |gpu: &Gpu| {

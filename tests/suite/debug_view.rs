@@ -1,5 +1,5 @@
-//! Tests `DebugView`: a grey level shows a depth or a distance, the cross unfolds as documented, and what cannot be
-//! drawn is refused.
+//! Tests `DebugView`: a grey level shows a depth or a distance, the cross unfolds as documented,
+//! and what cannot be drawn is refused.
 
 use glam::{DVec3, Vec3};
 use image::RgbaImage;
@@ -39,7 +39,8 @@ fn picture(
     drawn.map(|()| readback::rgba8(gpu, &target))
 }
 
-/// Asserts that a pixel is grey, opaque, and at most half a step of 8 bits (and f32's rounding of it) from `wanted`.
+/// Asserts that a pixel is grey, opaque, and at most half a step of 8 bits (and f32's rounding of
+/// it) from `wanted`.
 fn assert_grey(image: &RgbaImage, [x, y]: [u32; 2], wanted: f64, name: &str) {
     let [r, g, b, a] = image.get_pixel(x, y).0;
     assert!(r == g && g == b && a == 255, "{name} at {x}, {y}");
@@ -153,12 +154,13 @@ fn a_spot_shows_distances() {
 /// Are the distances of six walls, all different.
 const WALLS: [f32; 6] = [3.0, 4.0, 2.5, 3.5, 4.5, 2.0];
 
-/// Describes a room with the light at the origin and a small ball in each face, beside its middle: by the direction of
-/// the ball, and by where the cross must show it, in cells of the four by three from the upper left.
+/// Describes a room with the light at the origin and a small ball in each face, beside its middle:
+/// by the direction of the ball, and by where the cross must show it, in cells of the four by three
+/// from the upper left.
 ///
-/// The cross shows what a viewer sees who stands at the light and looks along -z, with the other walls folded outward:
-/// right is +x and up is +y, the ceiling's lower border is the upper border of the wall ahead, and the wall behind is
-/// outermost on the right.
+/// The cross shows what a viewer sees who stands at the light and looks along -z, with the other
+/// walls folded outward: right is +x and up is +y, the ceiling's lower border is the upper border
+/// of the wall ahead, and the wall behind is outermost on the right.
 const BALLS: [(Vec3, [f32; 2]); 6] = [
     (Vec3::new(1.0, 0.5, -0.5), [2.25, 1.25]),
     (Vec3::new(-1.0, 0.5, -0.5), [0.75, 1.25]),
@@ -227,15 +229,17 @@ fn a_cross_shows_the_walls_of_a_room() {
     let shadow = lamp(gpu);
     let image = picture(gpu, shadow.maps(), DebugImage::Cross, CROSS).expect("a cube");
     for (wall, cell) in WALLS.into_iter().zip(CELLS) {
-        // The ray points straight ahead: the middle of an odd cell is the middle of a pixel, and half a texel from that
-        // of a texel.
+        // The ray points straight ahead: the middle of an odd cell is the middle of a pixel, and
+        // half a texel from that of a texel.
         assert_grey(&image, pixel(cell), f64::from(wall / RANGE), "wall");
     }
     for (direction, cell) in BALLS {
-        // The cell shows the ball's front, and at the opposite position the wall, which is farther than any ball.
+        // The cell shows the ball's front, and at the opposite position the wall, which is farther
+        // than any ball.
         let front = (direction * 1.2).length() - 0.15;
         let grey = f32::from(image.get_pixel(pixel(cell)[0], pixel(cell)[1]).0[0]) / 255.0;
-        // One pixel from the ball's middle the surface is a little farther away: by at most a fifth of the radius.
+        // One pixel from the ball's middle the surface is a little farther away: by at most a fifth
+        // of the radius.
         let distance = grey * RANGE;
         assert!(
             (distance - front).abs() < 0.03 + RANGE / 255.0,
@@ -254,8 +258,9 @@ fn a_cross_shows_the_walls_of_a_room() {
     }
 }
 
-/// A light without an end of its range shows distances as shares of the distance up to which receivers are seen: the farthest
-/// corner of the floor's box here, rounded up by at most a quantized size step of 1.19.
+/// A light without an end of its range shows distances as shares of the distance up to which
+/// receivers are seen: the farthest corner of the floor's box here, rounded up by at most a
+/// quantized size step of 1.19.
 #[test]
 fn an_endless_light_shows_distances() {
     let gpu = gpu();

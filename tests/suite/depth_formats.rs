@@ -1,4 +1,5 @@
-//! Tests maps of 16 bits: what they contain, what they cost, and casters that were not made for them.
+//! Tests maps of 16 bits: what they contain, what they cost, and casters that were not made for
+//! them.
 
 use glam::{DVec3, Mat4, Vec3};
 use shadow_support::mesh::Mesh;
@@ -48,9 +49,9 @@ fn frame<'a>(casters: &'a [&'a dyn ShadowCaster]) -> DirectionalFrame<'a> {
     }
 }
 
-/// For the same scene in both formats, depths differ by a step at most, visibilities away from edges do not differ, and
-/// the memory is half. The reported gap is larger by two steps of `depth_range / 65535`: the receiver's and the
-/// caster's.
+/// For the same scene in both formats, depths differ by a step at most, visibilities away from
+/// edges do not differ, and the memory is half. The reported gap is larger by two steps of
+/// `depth_range / 65535`: the receiver's and the caster's.
 #[test]
 fn sixteen_bits_hold_the_same_depths_to_a_step() {
     let gpu = gpu();
@@ -100,8 +101,8 @@ fn sixteen_bits_hold_the_same_depths_to_a_step() {
     assert!((gaps[1] - gaps[0] - wanted).abs() <= 4.0 * f32::EPSILON * gaps[1]);
 }
 
-/// A caster without a pipeline for the map's format is an error that names it; nothing is recorded, and the next valid
-/// frame is drawn. Casters that the view does not need are not checked.
+/// A caster without a pipeline for the map's format is an error that names it; nothing is recorded,
+/// and the next valid frame is drawn. Casters that the view does not need are not checked.
 #[test]
 fn casters_of_another_format_are_refused() {
     let gpu = gpu();

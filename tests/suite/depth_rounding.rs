@@ -1,5 +1,5 @@
-//! Tests that the depths that a map contains of a plane are as near to the plane's own as the uniforms state: the
-//! errors that the bias allows for are those that the device makes.
+//! Tests that the depths that a map contains of a plane are as near to the plane's own as the
+//! uniforms state: the errors that the bias allows for are those that the device makes.
 
 use glam::{DVec2, DVec3, Vec3};
 use shadow_support::mesh::Mesh;
@@ -18,7 +18,8 @@ use crate::fixtures::view_member::{member, texel_from_anchor};
 
 const MAP_SIZE: u32 = 256;
 
-/// Is a sheet near the origin at `tilt` degrees to the light, with coverage of everything that lies `range` around it.
+/// Is a sheet near the origin at `tilt` degrees to the light, with coverage of everything that lies
+/// `range` around it.
 struct Sheet {
     scene: Scene,
     light: DVec3,
@@ -49,8 +50,8 @@ impl Sheet {
         }
     }
 
-    /// Returns the largest difference of a stored depth from the plane's, as a fraction of what the uniforms allow for
-    /// it.
+    /// Returns the largest difference of a stored depth from the plane's, as a fraction of what the
+    /// uniforms allow for it.
     fn worst(&self, shadow: &mut DirectionalShadow) -> (f64, usize) {
         let gpu = gpu();
         let frame = DirectionalFrame {
@@ -83,9 +84,9 @@ impl Sheet {
     }
 }
 
-/// In ndc a depth errs by 6u of the range, by one step of a 16-bit format, and by the plane's slope over the rounding
-/// of texel coordinates and the snapping of vertices. No texel of any sheet errs by more, and some err by a tenth of
-/// that at least, so that the bound is needed.
+/// In ndc a depth errs by 6u of the range, by one step of a 16-bit format, and by the plane's slope
+/// over the rounding of texel coordinates and the snapping of vertices. No texel of any sheet errs
+/// by more, and some err by a tenth of that at least, so that the bound is needed.
 #[test]
 fn stored_depths_err_by_no_more_than_the_uniforms_say() {
     let mut words = Vec::new();

@@ -1,4 +1,5 @@
-//! Tests the depth texture that an engine receives: what its getters return, and that it can be copied.
+//! Tests the depth texture that an engine receives: what its getters return, and that it can be
+//! copied.
 
 use glam::{DVec3, Vec3};
 use shadow_support::mesh::Mesh;
@@ -10,8 +11,8 @@ use crate::fixtures::gpu::vulkan;
 use crate::fixtures::probe::record;
 use crate::fixtures::scene::Scene;
 
-/// A copy of the layer and a shader's samples of it agree bit for bit. (wgpu's OpenGL backend does not copy depth
-/// textures.)
+/// A copy of the layer and a shader's samples of it agree bit for bit. (wgpu's OpenGL backend does
+/// not copy depth textures.)
 #[test]
 fn the_texture_can_be_copied() {
     const SIZE: u32 = 64;

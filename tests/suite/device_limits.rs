@@ -1,5 +1,5 @@
-//! Tests devices that were created with limits far below the defaults: everything works, or the error names the limit.
-//! The device's own error is never returned.
+//! Tests devices that were created with limits far below the defaults: everything works, or the
+//! error names the limit. The device's own error is never returned.
 
 use std::fmt::Debug;
 
@@ -29,7 +29,8 @@ fn device(lower: impl FnOnce(&mut wgpu::Limits)) -> Gpu {
     })
 }
 
-/// Returns the value, or `None` for an error of the library's own. Panics with the message of a device's error.
+/// Returns the value, or `None` for an error of the library's own. Panics with the message of a
+/// device's error.
 fn answered<T, E: Debug>(result: Result<T, E>, what: &str, refused: &mut usize) -> Option<T> {
     match result {
         Ok(value) => Some(value),
@@ -61,7 +62,8 @@ fn pool_descriptor(capacity: u32) -> PoolDescriptor<'static> {
     }
 }
 
-/// Creates pipelines of the built-in stages, and one of an engine's own with three buffers and two groups.
+/// Creates pipelines of the built-in stages, and one of an engine's own with three buffers and two
+/// groups.
 fn pipelines(gpu: &Gpu, what: &str, refused: &mut usize) -> Option<CasterPipeline> {
     let built_in = |model| {
         let descriptor = CasterPipelineDescriptor {
@@ -103,8 +105,8 @@ fn pipelines(gpu: &Gpu, what: &str, refused: &mut usize) -> Option<CasterPipelin
     answered(built_in(ModelTransform::INSTANCE_MATRIX), what, refused)
 }
 
-/// Creates everything that the library has, and records frames and draws images where it could be created. Returns the
-/// number of refusals.
+/// Creates everything that the library has, and records frames and draws images where it could be
+/// created. Returns the number of refusals.
 fn all(gpu: &Gpu, what: &str) -> usize {
     let device = &gpu.device;
     let mut refused = 0;
@@ -228,7 +230,8 @@ fn every_low_limit_is_kept_or_named() {
     assert_eq!(all(&device(|_| ()), "the defaults"), 0);
 }
 
-/// Returns the number of layers that are allocated: on OpenGL an array of one layer, or of six, has one layer more.
+/// Returns the number of layers that are allocated: on OpenGL an array of one layer, or of six, has
+/// one layer more.
 fn allocated(gpu: &Gpu, layers: u64) -> u64 {
     let opengl = gpu.adapter.backend == wgpu::Backend::Gl;
     layers + u64::from(opengl && (layers == 1 || layers.is_multiple_of(6)))

@@ -1,5 +1,5 @@
-//! Tests devices that are lost, out of memory, or not the one on which a light was made: every constructor and every
-//! call returns a typed error and never panics.
+//! Tests devices that are lost, out of memory, or not the one on which a light was made: every
+//! constructor and every call returns a typed error and never panics.
 
 use glam::{DVec3, Mat4, Vec3};
 use shadow_support::mesh::Mesh;
@@ -163,7 +163,8 @@ fn pool_frame<'a, L>(
     }
 }
 
-/// Once the device is lost, nothing is created on it and no frame is recorded, and each call returns that error.
+/// Once the device is lost, nothing is created on it and no frame is recorded, and each call
+/// returns that error.
 #[test]
 fn a_lost_device_makes_nothing() {
     let lost = own_gpu(GpuRequest::default());
@@ -258,8 +259,8 @@ fn a_lost_device_makes_nothing() {
     );
 }
 
-/// A frame that draws with the uniforms of the one before uploads nothing, and is an error all the same; one that keeps
-/// its map makes no call to the device.
+/// A frame that draws with the uniforms of the one before uploads nothing, and is an error all the
+/// same; one that keeps its map makes no call to the device.
 #[test]
 fn a_lost_device_draws_nothing() {
     let lost = own_gpu(GpuRequest::default());
@@ -295,8 +296,8 @@ fn a_lost_device_draws_nothing() {
     assert_eq!(status(&caster), Err(error));
 }
 
-/// A light of another device is refused before anything is made or drawn, and frames are recorded on the light's own
-/// device.
+/// A light of another device is refused before anything is made or drawn, and frames are recorded
+/// on the light's own device.
 #[test]
 fn a_light_of_another_device_is_refused() {
     let [here, there] = two_gpus();
@@ -329,8 +330,8 @@ fn a_light_of_another_device_is_refused() {
     );
 }
 
-/// The map is larger than a software adapter can address: the limits allow each side and the layers, but the memory
-/// does not suffice. (OpenGL does not report when it runs out.)
+/// The map is larger than a software adapter can address: the limits allow each side and the
+/// layers, but the memory does not suffice. (OpenGL does not report when it runs out.)
 #[test]
 fn maps_larger_than_the_memory() {
     let limits = wgpu::Limits {

@@ -1,10 +1,10 @@
-//! Tests the direction-space filters of point lights on the device against a reference in f64 that is written here from
-//! their description: 64 or 20 nearest comparisons in the faces read back, along the receiver's direction plus an
-//! offset.
+//! Tests the direction-space filters of point lights on the device against a reference in f64 that
+//! is written here from their description: 64 or 20 nearest comparisons in the faces read back,
+//! along the receiver's direction plus an offset.
 //!
-//! A single comparison is undecided where f32 does not resolve it. The reference evaluates the receiver and the corners
-//! of its rounding band, on every face on which the sample may lie, and the device's mean must lie between the means of
-//! the least and of the greatest results.
+//! A single comparison is undecided where f32 does not resolve it. The reference evaluates the
+//! receiver and the corners of its rounding band, on every face on which the sample may lie, and
+//! the device's mean must lie between the means of the least and of the greatest results.
 
 use glam::{DVec2, DVec3, Vec3};
 use shadow_support::camera::Camera;
@@ -67,8 +67,8 @@ struct Reference {
 }
 
 impl Reference {
-    /// Returns the faces on which a position may lie, as far as f32 resolves it: that of the largest component, and
-    /// those of components nearly equal to it.
+    /// Returns the faces on which a position may lie, as far as f32 resolves it: that of the
+    /// largest component, and those of components nearly equal to it.
     fn faces(from_light: DVec3) -> impl Iterator<Item = usize> {
         let reach = from_light.abs();
         (0..3)
@@ -116,9 +116,10 @@ impl Reference {
             let Some(band) = band(uniform, self.filter, self.bias, at, normal, &receiver) else {
                 return (0.0, 1.0);
             };
-            // The band is that of a position known to 2u of its reach, 8u with the matrix. Here the position results
-            // from a normalisation (4u) and a quotient of two dot products, whose relative error is 6u over the cosine
-            // of incidence: 34u for the least cosine of this test, 0.2. Six bands include both.
+            // The band is that of a position known to 2u of its reach, 8u with the matrix. Here the
+            // position results from a normalisation (4u) and a quotient of two dot products, whose
+            // relative error is 6u over the cosine of incidence: 34u for the least cosine of this
+            // test, 0.2. Six bands include both.
             let band = Band {
                 texel: band.texel * 6.0,
                 depth: band.depth * 6.0,
@@ -213,8 +214,8 @@ fn compare(filter: Filter, bias: Bias, with_camera: bool) {
         undecided += usize::from(high > low);
         partial += usize::from(low == high && low > 0.0 && high < 1.0);
     }
-    // A point is undecided if any of its samples is: of 64 samples, one in some hundred straddles the border of a
-    // texel.
+    // A point is undecided if any of its samples is: of 64 samples, one in some hundred straddles
+    // the border of a texel.
     assert!(undecided < points.len() / 5, "{undecided} undecided");
     assert!(partial > points.len() / 50, "{partial} partly lit");
 }

@@ -1,4 +1,5 @@
-//! Tests where shadows end: at a distance along the view or at the end of a light's range, at once or over a fade.
+//! Tests where shadows end: at a distance along the view or at the end of a light's range, at once
+//! or over a fade.
 
 use glam::{DVec3, Vec3};
 use shadow_support::camera::Camera;
@@ -71,8 +72,8 @@ fn positions(camera: &Camera) -> Vec<(f64, Point)> {
     positions
 }
 
-/// Checks that all receivers beyond the distance are lit, whatever the maps contain, and that all before it are dark,
-/// in every way to fit the maps.
+/// Checks that all receivers beyond the distance are lit, whatever the maps contain, and that all
+/// before it are dark, in every way to fit the maps.
 #[test]
 fn shadows_end_at_the_distance() {
     const DISTANCE: f32 = 60.0;
@@ -120,7 +121,8 @@ fn shadows_fade_before_the_distance() {
     let mut partial = 0;
     for ((depth, _), seen) in positions.iter().zip(seen(&descriptor, &[view], &points)) {
         let wanted = 1.0 - ((60.0 - depth) / 15.0).clamp(0.0, 1.0);
-        // The weight is a sum of four products whose values are at most four, so that its error is a few ulps of four.
+        // The weight is a sum of four products whose values are at most four, so that its error is
+        // a few ulps of four.
         let error = (f64::from(seen) - wanted).abs();
         assert!(
             error < 32.0 * f64::from(f32::EPSILON),
@@ -131,8 +133,8 @@ fn shadows_fade_before_the_distance() {
     assert!(partial > 30, "{partial}");
 }
 
-/// Checks that two eyes share the farther end, and that cameras which look in different directions have no common end
-/// and keep their shadows.
+/// Checks that two eyes share the farther end, and that cameras which look in different directions
+/// have no common end and keep their shadows.
 #[test]
 fn several_cameras_share_an_end_if_they_look_the_same_way() {
     let [left, right] = [-0.03, 0.03].map(camera);

@@ -1,4 +1,5 @@
-//! Tests what `ShadowBindings` emits for every kind of light, every filter and every bias, alone and combined.
+//! Tests what `ShadowBindings` emits for every kind of light, every filter and every bias, alone
+//! and combined.
 
 use wgpu_shadows::{Bias, Filter, ShadowBindings, ShadowBindingsDescriptor, ShadowMaps};
 
@@ -33,8 +34,8 @@ struct Named {
     light: Box<dyn Light>,
 }
 
-/// Returns a light of a kind for every filter and bias that it accepts. Maps are one texel, since only the WGSL is of
-/// interest.
+/// Returns a light of a kind for every filter and bias that it accepts. Maps are one texel, since
+/// only the WGSL is of interest.
 fn every_way(kind: Kind) -> Vec<Named> {
     let directions: &[Filter] = if kind.has_cube() { &DIRECTIONS } else { &[] };
     let filters = [Filter::PLANAR, &SOFT, directions].concat();
@@ -60,9 +61,9 @@ fn emitted(group: u32, lights: &[(&str, &ShadowMaps)]) -> String {
     bindings.wgsl().to_owned()
 }
 
-/// Checks that naga and WGSL's grammar accept the text, that all its bindings are in `group` at 0, 1, 2 and so on, and
-/// that there is a function for each light that takes two vectors, after an index where the light is a pool's, and
-/// returns a float.
+/// Checks that naga and WGSL's grammar accept the text, that all its bindings are in `group` at 0,
+/// 1, 2 and so on, and that there is a function for each light that takes two vectors, after an
+/// index where the light is a pool's, and returns a float.
 fn check(text: &str, group: u32, lights: &[(&str, Kind)]) -> Result<(), String> {
     let module = wgsl::validate(text)?;
     let mut bindings = Vec::new();
@@ -139,7 +140,8 @@ fn one_light_validates_in_every_group() {
     report(&failures);
 }
 
-/// For every two lights of different kinds, shared modules appear once, samplers are shared, and names do not collide.
+/// For every two lights of different kinds, shared modules appear once, samplers are shared, and
+/// names do not collide.
 #[test]
 fn two_lights_validate() {
     let [_, _, sun, others @ ..] = Kind::ALL;

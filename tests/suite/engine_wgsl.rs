@@ -1,4 +1,5 @@
-//! Tests casters with the engine's own WGSL and bind groups: a leaf card with holes, and a flag that moves.
+//! Tests casters with the engine's own WGSL and bind groups: a leaf card with holes, and a flag
+//! that moves.
 
 use glam::{DVec3, Mat4, Vec3};
 use shadow_support::mesh::Mesh;
@@ -49,7 +50,8 @@ fn vertex(@location(0) position: vec3<f32>) -> @builtin(position) vec4<f32> {
 }
 ";
 
-/// Is a caster as an engine writes it: buffers, one bind group, and a version that it counts itself.
+/// Is a caster as an engine writes it: buffers, one bind group, and a version that it counts
+/// itself.
 struct Card {
     pipeline: CasterPipeline,
     vertices: wgpu::Buffer,

@@ -1,5 +1,5 @@
-//! Tests what a sun refuses at construction: each error is provoked, compared as a value, and read as a message that
-//! names field, rule and value.
+//! Tests what a sun refuses at construction: each error is provoked, compared as a value, and read
+//! as a message that names field, rule and value.
 
 use wgpu_shadows::{
     Bias, CascadeSplit, DirectionalShadow, DirectionalShadowDescriptor, Filter, ShadowError,

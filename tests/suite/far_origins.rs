@@ -1,5 +1,5 @@
-//! Tests origins of any finite magnitude: a frame is correct or is refused. Nothing is drawn with a matrix that is not
-//! finite, and no view is reported as empty that is not.
+//! Tests origins of any finite magnitude: a frame is correct or is refused. Nothing is drawn with a
+//! matrix that is not finite, and no view is reported as empty that is not.
 
 use glam::{DVec3, Mat4, Vec3};
 use shadow_support::camera::Camera;
@@ -33,7 +33,8 @@ fn meshes(unit: f32) -> [Mesh; 2] {
     [slab, Mesh::floor(0.0, FLOOR_HALF * unit)]
 }
 
-/// Returns origins of all magnitudes up to where the steps of f64 exceed the scene, and some of every size beyond.
+/// Returns origins of all magnitudes up to where the steps of f64 exceed the scene, and some of
+/// every size beyond.
 fn origins() -> Vec<DVec3> {
     let axes = [
         DVec3::X,
@@ -201,8 +202,8 @@ fn scan(case: &Case, scene: &Scene, casters: &[MeshCaster]) -> usize {
     let mut judged = 0;
     for origin in origins() {
         let what = format!("{} at {origin}", case.words());
-        // The casters keep their positions in render space, so each origin puts them elsewhere in the world without a
-        // change of their revisions.
+        // The casters keep their positions in render space, so each origin puts them elsewhere in
+        // the world without a change of their revisions.
         shadow.invalidate();
         shadow.reset_history();
         let frame = DirectionalFrame {
@@ -341,8 +342,8 @@ fn an_empty_world_is_empty_at_any_origin() {
     }
 }
 
-/// Lights are three units above the floor, as exactly as the spacing of their f64 position allows; others are as far
-/// away as their origin.
+/// Lights are three units above the floor, as exactly as the spacing of their f64 position allows;
+/// others are as far away as their origin.
 #[test]
 fn lamps_of_any_origin_are_right_or_refused() {
     let gpu = gpu();
@@ -410,8 +411,8 @@ fn lamps_of_any_origin_are_right_or_refused() {
                 } else {
                     assert_finite(spot.maps().views(), spot.maps().view_uniforms(), &what);
                 }
-                // The test compares where the light is above the slab and the slab's shadow leaves some of the floor
-                // lit.
+                // The test compares where the light is above the slab and the slab's shadow leaves
+                // some of the floor lit.
                 if light.distance(DVec3::Y * 3.0) > 0.5 {
                     continue;
                 }

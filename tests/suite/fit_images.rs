@@ -1,5 +1,6 @@
-//! Tests everything from random cameras and boxes to visibilities: the fit must show every shadow that can be seen, and
-//! must not depend on where the world's origin is or in what unit the world is measured.
+//! Tests everything from random cameras and boxes to visibilities: the fit must show every shadow
+//! that can be seen, and must not depend on where the world's origin is or in what unit the world
+//! is measured.
 //!
 //! Seeds are fixed; `PROPTEST_RNG_SEED` and `PROPTEST_CASES` explore further.
 
@@ -60,8 +61,8 @@ fn layer_at(placed: &Placed, place: DVec3) -> Option<usize> {
         .position(|view| receiver(view, FILTER, Bias::Auto, position, DVec3::Y).inside)
 }
 
-/// Returns the longer side of the texels that a receiver is sampled with, or of the coarsest where no cascade covers
-/// it.
+/// Returns the longer side of the texels that a receiver is sampled with, or of the coarsest where
+/// no cascade covers it.
 fn texel_at(placed: &Placed, place: DVec3) -> f64 {
     let views = placed.report.views.iter();
     let sizes: Vec<f64> = views
@@ -74,8 +75,8 @@ fn texel_at(placed: &Placed, place: DVec3) -> f64 {
         .max(1e-3)
 }
 
-/// Bounds the f32 error of a receiver's texel coordinates, both axes together, and of the offset that the bias adds for
-/// it.
+/// Bounds the f32 error of a receiver's texel coordinates, both axes together, and of the offset
+/// that the bias adds for it.
 fn texel_error(placed: &Placed, place: DVec3) -> f64 {
     let position = placed.render(place).as_vec3().as_dvec3();
     layer_at(placed, place).map_or(0.0, |layer| {
@@ -89,8 +90,9 @@ fn texel_error(placed: &Placed, place: DVec3) -> f64 {
     })
 }
 
-/// What the camera sees of the floor is as dark as the ray-traced truth, wherever the truth is the same for three
-/// texels around: one more than the kernel's reach, for the corner of its square and the snapping of vertices.
+/// What the camera sees of the floor is as dark as the ray-traced truth, wherever the truth is the
+/// same for three texels around: one more than the kernel's reach, for the corner of its square and
+/// the snapping of vertices.
 #[test]
 fn every_visible_shadow_is_there_and_no_other() {
     const MARGIN: f64 = 3.0;
@@ -139,8 +141,8 @@ fn every_visible_shadow_is_there_and_no_other() {
     );
 }
 
-/// Covers the whole scene, by its bounds or by a camera that sees all of it, so that the f32 matrix of a camera has no
-/// influence on the fit.
+/// Covers the whole scene, by its bounds or by a camera that sees all of it, so that the f32 matrix
+/// of a camera has no influence on the fit.
 fn whole_scene(by_camera: bool) -> impl Fn(Aabb) -> Coverage {
     move |bounds| {
         if !by_camera {
@@ -161,21 +163,24 @@ fn whole_scene(by_camera: bool) -> impl Fn(Aabb) -> Coverage {
     }
 }
 
-/// If the same world is seen from another render origin, light-space bounds and depth ranges are the same to the last
-/// bit, and visibilities differ by no more than f32 coordinates do.
+/// If the same world is seen from another render origin, light-space bounds and depth ranges are
+/// the same to the last bit, and visibilities differ by no more than f32 coordinates do.
 ///
-/// A receiver's texel coordinates err by at most `Band::texel` in each of the two frames; the offset along the normal
-/// for the rounding of coordinates differs as well. The result of a sharpened kernel changes by no more than its
-/// sharpness per texel and axis. Beyond that only comparisons can flip, at receivers as close to a caster as depth
-/// resolves, and at texels whose centre lies within 1/256 of an edge, to which vertices snap: at most one in five
-/// hundred of the receivers, most of which lie in and around shadows.
+/// A receiver's texel coordinates err by at most `Band::texel` in each of the two frames; the
+/// offset along the normal for the rounding of coordinates differs as well. The result of a
+/// sharpened kernel changes by no more than its sharpness per texel and axis. Beyond that only
+/// comparisons can flip, at receivers as close to a caster as depth resolves, and at texels whose
+/// centre lies within 1/256 of an edge, to which vertices snap: at most one in five hundred of the
+/// receivers, most of which lie in and around shadows.
 #[test]
 fn a_moved_origin_changes_nothing() {
     let (same, flipped) = (Cell::new(0), Cell::new(0));
     let test = |(mut world, offset, by_camera): (World, [i32; 3], bool)| {
-        // The ends of cascades depend on depths along the view, and these on the camera's f32 matrix.
+        // The ends of cascades depend on depths along the view, and these on the camera's f32
+        // matrix.
         world.cascades = 1;
-        // These are multiples of an eighth up to a thousand: with the coordinates' 64ths they take 16 bits of f32's 24.
+        // These are multiples of an eighth up to a thousand: with the coordinates' 64ths they take
+        // 16 bits of f32's 24.
         let offset = DVec3::from_array(offset.map(f64::from)) / 8.0;
         let place = |origin| world.place(gpu(), MAP_SIZE, origin, 1.0, whole_scene(by_camera));
         let (here, there) = (place(DVec3::ZERO), place(offset));
@@ -217,8 +222,8 @@ fn a_moved_origin_changes_nothing() {
     );
 }
 
-/// If the same world is measured in another unit, no bit of any visibility changes. (The units are powers of two, which
-/// change no mantissa.)
+/// If the same world is measured in another unit, no bit of any visibility changes. (The units are
+/// powers of two, which change no mantissa.)
 #[test]
 fn another_unit_changes_nothing() {
     let (dark, partial) = (Cell::new(0), Cell::new(0));

@@ -1,13 +1,15 @@
-//! Tests the layers of the source: modules use only those below them, and no two files need each other.
+//! Tests the layers of the source: modules use only those below them, and no two files need each
+//! other.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// Lists the folders of `src` from the ground up. A folder may use itself and those before it. The files directly in `src`
-/// and those of `src/error` may be used by all, and use what they need.
+/// Lists the folders of `src` from the ground up. A folder may use itself and those before it. The
+/// files directly in `src` and those of `src/error` may be used by all, and use what they need.
 const FLOORS: [&str; 6] = ["gpu", "fit", "cast", "receive", "debug", "light"];
 
-/// Holds what the files under `src` use of each other: for each file, the files from which it imports a name.
+/// Holds what the files under `src` use of each other: for each file, the files from which it
+/// imports a name.
 struct House {
     uses: BTreeMap<PathBuf, BTreeSet<PathBuf>>,
 }

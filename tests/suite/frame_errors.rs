@@ -1,5 +1,5 @@
-//! Tests bad frames of a sun: each is refused with field and value, nothing of it is recorded, and the last valid
-//! shadows remain.
+//! Tests bad frames of a sun: each is refused with field and value, nothing of it is recorded, and
+//! the last valid shadows remain.
 
 use glam::{DVec3, Mat4, Vec3};
 use shadow_support::camera::Camera;

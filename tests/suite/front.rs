@@ -1,5 +1,5 @@
-//! Tests that the configurations that the library ships are worth their cost: nothing that it can do is both cheaper
-//! and closer to the truth.
+//! Tests that the configurations that the library ships are worth their cost: nothing that it can
+//! do is both cheaper and closer to the truth.
 //!
 //! `cargo bench --bench speed_vs_error` measures this in full; here it is measured on small images
 //! and with counts alone. The cost is [`shadow_support::technique::Cost::frame_work`], and the
@@ -17,15 +17,16 @@ use wgpu_shadows::{
     Bias, DirectionalShadowDescriptor, Filter, OmniShadowDescriptor, SpotShadowDescriptor,
 };
 
-/// Omits the rings of rays around each pixel, which distinguish errors at edges from others but do not change their
-/// sum.
+/// Omits the rings of rays around each pixel, which distinguish errors at edges from others but do
+/// not change their sum.
 const EFFORT: Effort = Effort {
     picture: [160, 90],
     disc_side: 1,
     ring_rays: 0,
 };
 
-/// Measures every filter and map size with the derived bias, fitted to the camera, over all scenes with hard shadows.
+/// Measures every filter and map size with the derived bias, fitted to the camera, over all scenes
+/// with hard shadows.
 fn measured() -> Vec<Overall> {
     let gpu = Gpu::new(&GpuRequest::measuring()).expect("an adapter");
     let mut prober = Prober::new(&gpu);
@@ -77,8 +78,8 @@ fn presets_differ_from_the_default_in_filter_and_map_size_alone() {
     }
 }
 
-/// Spot lights and the faces of point lights have half the texels per side of a sun's map, which is how the
-/// configurations are measured.
+/// Spot lights and the faces of point lights have half the texels per side of a sun's map, which is
+/// how the configurations are measured.
 #[test]
 fn local_lights_default_to_the_filter_and_half_the_map_of_a_sun() {
     let sun = DirectionalShadowDescriptor::default();

@@ -25,8 +25,8 @@ fn uniform(clip: Mat4, side: Vec3) -> Vec<f32> {
     clip.to_cols_array().into_iter().chain(side).collect()
 }
 
-/// With both windings, both handednesses, and vectors of any length to the side, a leaning triangle has its own normal
-/// on the given side.
+/// With both windings, both handednesses, and vectors of any length to the side, a leaning triangle
+/// has its own normal on the given side.
 #[test]
 fn normals_are_on_the_side_that_is_told() {
     let gpu = gpu();
@@ -47,7 +47,8 @@ fn normals_are_on_the_side_that_is_told() {
             if turned {
                 vertices.swap(1, 2);
             }
-            // The steps of a pixel have positions of all sizes: the position is scaled, and clip space with it.
+            // The steps of a pixel have positions of all sizes: the position is scaled, and clip
+            // space with it.
             for scale in [1.0, 1e-6, 1e-30, 1e-34, 1e6, 1e30] {
                 let vertices = vertices.map(|corner| corner * scale);
                 let clip = Mat4::from_scale(Vec3::new(0.3 * mirrored / scale, 0.3 / scale, 0.0));
@@ -58,8 +59,8 @@ fn normals_are_on_the_side_that_is_told() {
                 };
                 let context = format!("mirrored {mirrored}, turned {turned}, scale {scale}");
                 let near = |seen: [f32; 3], wanted: Vec3| {
-                    // A step of 8 bits is 1/127.5; half of it is rounding, and the error of the derivatives is far
-                    // below it.
+                    // A step of 8 bits is 1/127.5; half of it is rounding, and the error of the
+                    // derivatives is far below it.
                     Vec3::from_array(seen).abs_diff_eq(wanted, 0.5 / 127.5 + 1e-3)
                 };
                 for side in sides {
@@ -84,9 +85,10 @@ fn normals_are_on_the_side_that_is_told() {
     }
 }
 
-/// Far from the origin of render space, positions are rounded, and so are their differences from pixel to pixel: a
-/// normal made of them errs by up to 8 u P / f radians, with P the largest coordinate, f the size of a pixel on the
-/// surface, and u = 2^-24. (Two rounded positions differ by up to 2 u P each way, on two axes, twice.)
+/// Far from the origin of render space, positions are rounded, and so are their differences from
+/// pixel to pixel: a normal made of them errs by up to 8 u P / f radians, with P the largest
+/// coordinate, f the size of a pixel on the surface, and u = 2^-24. (Two rounded positions differ
+/// by up to 2 u P each way, on two axes, twice.)
 #[test]
 fn normals_err_by_the_rounding_of_positions() {
     let gpu = gpu();

@@ -1,4 +1,5 @@
-//! Compares a small scene through an engine's own shader, and a map as `DebugView` draws it, with reference images.
+//! Compares a small scene through an engine's own shader, and a map as `DebugView` draws it, with
+//! reference images.
 
 use glam::{DVec3, Vec3};
 use image::RgbaImage;
@@ -65,8 +66,8 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
 }
 ";
 
-/// Returns meshes and their colours: a floor, a box, a ball, a thin leaning board, and a post that casts a long thin
-/// shadow.
+/// Returns meshes and their colours: a floor, a box, a ball, a thin leaning board, and a post that
+/// casts a long thin shadow.
 fn meshes() -> Vec<(Mesh, Vec3)> {
     let board = Mesh::sheet(
         Vec3::new(-1.6, 0.0, 1.6),

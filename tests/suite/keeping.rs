@@ -143,7 +143,8 @@ fn two_meshes_of_the_same_shape_are_two_things() {
     assert_eq!(stage.status(&[&second]), ViewStatus::Drawn);
 }
 
-/// An engine may number its own casters as it likes: none of them is taken for a mesh, though meshes are numbered too.
+/// An engine may number its own casters as it likes: none of them is taken for a mesh, though
+/// meshes are numbered too.
 #[test]
 fn meshes_and_an_engines_own_casters_are_never_the_same() {
     let mut stage = Stage::new();
@@ -235,8 +236,8 @@ fn another_light_draws_again() {
     assert!(!stage.is_dark_below(0.0));
 }
 
-/// An engine that moves its render origin by a step that f32 represents exactly sees the same world: the map is kept,
-/// and the moved receivers have the same visibilities.
+/// An engine that moves its render origin by a step that f32 represents exactly sees the same
+/// world: the map is kept, and the moved receivers have the same visibilities.
 #[test]
 fn a_map_outlives_a_moved_origin() {
     let mut stage = Stage::new();
@@ -256,8 +257,8 @@ fn a_map_outlives_a_moved_origin() {
     }
 }
 
-/// A static scene under a moving camera costs nothing while the quantized size and the position of the light-space
-/// bounds still suffice.
+/// A static scene under a moving camera costs nothing while the quantized size and the position of
+/// the light-space bounds still suffice.
 #[test]
 fn a_trembling_camera_keeps_the_map() {
     let mut stage = Stage::new();
@@ -272,8 +273,8 @@ fn a_trembling_camera_keeps_the_map() {
         drawn += stage.record(&[&floor, &slab]).passes;
         assert!(stage.is_dark_below(0.0) && !stage.is_dark_below(2.0));
     }
-    // The map is drawn in the first frame, and at most twice more, where the jitter crosses a step of the depth range
-    // or of the quantized size.
+    // The map is drawn in the first frame, and at most twice more, where the jitter crosses a step
+    // of the depth range or of the quantized size.
     assert!((1..=3).contains(&drawn), "{drawn} passes");
 }
 
@@ -309,8 +310,8 @@ fn cascades_are_kept_one_by_one() {
     assert_eq!(statuses[2], ViewStatus::Drawn, "{second:?}");
 }
 
-/// Uniforms are uploaded in the order of the commands: if two frames are recorded before either is submitted, each sees
-/// its own.
+/// Uniforms are uploaded in the order of the commands: if two frames are recorded before either is
+/// submitted, each sees its own.
 #[test]
 fn frames_in_flight_do_not_mix() {
     let mut stage = Stage::new();

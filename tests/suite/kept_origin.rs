@@ -1,5 +1,6 @@
-//! Tests maps that are kept while the origin of render space moves: their depths carry the rounding of the render
-//! coordinates from which they were drawn, and no receiver may shadow itself because of it.
+//! Tests maps that are kept while the origin of render space moves: their depths carry the rounding
+//! of the render coordinates from which they were drawn, and no receiver may shadow itself because
+//! of it.
 
 use glam::{DMat3, DVec3, Mat4, Quat, Vec3};
 use shadow_support::mesh::Mesh;
@@ -21,8 +22,8 @@ use crate::fixtures::watched::Watched;
 /// Lists the distances of the wall from the world's origin, where the map is drawn first.
 const DISTANCES: [f64; 6] = [20.0, 120.0, 500.0, 1000.0, 5000.0, 20_000.0];
 
-/// Is the least visibility of lit receivers: the results of 3000 of them differ from 1 by the rounding of a sum of 16
-/// weights, sharpened three times.
+/// Is the least visibility of lit receivers: the results of 3000 of them differ from 1 by the
+/// rounding of a sum of 16 weights, sharpened three times.
 const LIT: f32 = 1.0 - 192.0 * f32::EPSILON;
 
 /// Describes a wall 10 m wide and high whose sides follow none of the axes, somewhere in the world.
@@ -74,8 +75,9 @@ fn assert_lit(seen: &[f32], what: &str) {
     assert_eq!(dark, 0, "of {} lit receivers, {what}", seen.len());
 }
 
-/// Returns a low sun that the front of the wall faces. Depths vary so little across a texel that the allowance for
-/// rounding is the only part of the bias that keeps the wall from shadowing itself.
+/// Returns a low sun that the front of the wall faces. Depths vary so little across a texel that
+/// the allowance for rounding is the only part of the bias that keeps the wall from shadowing
+/// itself.
 fn low_sun(wall: &Wall) -> DirectionalLight {
     DirectionalLight::new(-wall.normal().as_vec3())
 }
@@ -118,7 +120,8 @@ fn a_sun_kept_while_the_origin_moves_to_its_wall() {
     assert!(kept > 0, "a short way costs no drawing");
 }
 
-/// Nothing is lost the other way round either: render coordinates that grow make the receivers coarser, not the map.
+/// Nothing is lost the other way round either: render coordinates that grow make the receivers
+/// coarser, not the map.
 #[test]
 fn a_sun_kept_while_the_origin_moves_away() {
     let gpu = gpu();
@@ -146,8 +149,8 @@ fn spot(wall: &Wall) -> SpotLight {
         position_world: wall.center + toward_light,
         direction: -toward_light.as_vec3(),
         outer_angle_radians: 0.35,
-        // The range is less than the distance to the farthest corner of the bounds, which are rounded, and so it is the
-        // same in every frame.
+        // The range is less than the distance to the farthest corner of the bounds, which are
+        // rounded, and so it is the same in every frame.
         range: 27.0,
     }
 }
@@ -182,8 +185,8 @@ fn a_spot_kept_while_the_origin_moves_to_its_wall() {
     }
 }
 
-/// The wall is static while an object moves beside it, and is therefore copied rather than drawn. The test runs on
-/// Vulkan alone, since wgpu's OpenGL backend copies no depth textures.
+/// The wall is static while an object moves beside it, and is therefore copied rather than drawn.
+/// The test runs on Vulkan alone, since wgpu's OpenGL backend copies no depth textures.
 #[test]
 fn a_wall_copied_while_the_origin_moves() {
     let gpu = vulkan();

@@ -1,5 +1,5 @@
-//! How far a spot or point light reaches: as far as receivers are seen, whatever else there is in the scene, and without drawing
-//! its maps again for it.
+//! How far a spot or point light reaches: as far as receivers are seen, whatever else there is in
+//! the scene, and without drawing its maps again for it.
 
 use glam::{DQuat, DVec3, Vec3};
 use shadow_support::camera::Camera;
@@ -11,8 +11,8 @@ use crate::fixtures::lamp_scenes::{Lamp, Setting, Shade, lamp_over_table, room, 
 use crate::fixtures::scene::Scene;
 use crate::fixtures::table;
 
-/// A ground, a wall or a sky that no camera sees changes no bit of what the light is looked up with. All of these stand where
-/// their shadows fall on nothing that is seen.
+/// A ground, a wall or a sky that no camera sees changes no bit of what the light is looked up
+/// with. All of these stand where their shadows fall on nothing that is seen.
 #[test]
 fn what_nobody_sees_changes_nothing() {
     let gpu = gpu();
@@ -41,11 +41,13 @@ fn what_nobody_sees_changes_nothing() {
     }
 }
 
-/// The reported texel is that at the farthest receiver that is seen: the depths of a view end there, give or take a quantized
-/// size step of 1.19, and for a spot only what lies in its cone counts.
+/// The reported texel is that at the farthest receiver that is seen: the depths of a view end
+/// there, give or take a quantized size step of 1.19, and for a spot only what lies in its cone
+/// counts.
 #[test]
 fn the_reach_ends_where_the_last_receiver_is_seen() {
-    // Seen from above, all of the floor and nothing else; the lamp's farthest corner of it, and the spot's.
+    // Seen from above, all of the floor and nothing else; the lamp's farthest corner of it, and the
+    // spot's.
     let floor = Aabb::new(Vec3::new(-40.0, 0.0, -30.0), Vec3::new(40.0, 0.0, 30.0));
     let thing = Mesh::cuboid(Vec3::new(0.2, 0.5, 0.2), Vec3::new(0.6, 1.0, 0.7));
     let scene = Scene::new(gpu(), &[thing]);
@@ -68,7 +70,8 @@ fn the_reach_ends_where_the_last_receiver_is_seen() {
             let report = lamp.record(light, f32::INFINITY, Some(&camera), &scene.list(), &[floor]);
             for view in report.views.iter().filter(|view| view.casters > 0) {
                 let reach = f64::from(view.depth_range_world);
-                // The near plane lies between the light and the thing, and the camera stands a little aside.
+                // The near plane lies between the light and the thing, and the camera stands a
+                // little aside.
                 let expected = farthest - 4.0..farthest * 1.19 * 1.02;
                 let name = lamp.name();
                 assert!(expected.contains(&reach), "{name}: {reach}, {expected:?}");
@@ -97,8 +100,9 @@ fn passes(setting: &Setting, mut lamp: Lamp, range: f32) -> u32 {
     frames.sum()
 }
 
-/// What a camera sees changes how far a light without an end reaches, and that alone draws no map again: over a walk the light
-/// takes no more passes than one that ends at 20, whose reach never changes, but for casters that it alone reaches.
+/// What a camera sees changes how far a light without an end reaches, and that alone draws no map
+/// again: over a walk the light takes no more passes than one that ends at 20, whose reach never
+/// changes, but for casters that it alone reaches.
 #[test]
 fn a_walk_draws_no_more_for_an_endless_range() {
     let settings = [

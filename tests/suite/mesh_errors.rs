@@ -139,8 +139,8 @@ fn meshes_of_another_device() {
     }
 }
 
-/// Bounds that are neither finite nor empty are refused when they are given, and so are transforms that make them so:
-/// one mesh must not prevent the frame of all.
+/// Bounds that are neither finite nor empty are refused when they are given, and so are transforms
+/// that make them so: one mesh must not prevent the frame of all.
 #[test]
 fn bounds_without_end() {
     let gpu = gpu();

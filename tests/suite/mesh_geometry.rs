@@ -11,9 +11,9 @@ use wgpu_shadows::{
 
 use crate::fixtures::frames::{Coverage, DirectionalFrame};
 use crate::fixtures::gpu::{gpu, two_gpus};
-use shadow_support::gpu::Gpu;
 use crate::fixtures::probe::record;
 use crate::fixtures::scene::default_pipeline;
+use shadow_support::gpu::Gpu;
 
 /// Records a frame with one caster and returns what became of its view.
 fn status(gpu: &Gpu, shadow: &mut DirectionalShadow, caster: &dyn ShadowCaster) -> ViewStatus {

@@ -1,5 +1,5 @@
-//! Tests `shadow_geometric_normal` under cameras of either handedness: the normal is on the given side, so that a scene
-//! seen in a mirror has no more acne than the scene itself.
+//! Tests `shadow_geometric_normal` under cameras of either handedness: the normal is on the given
+//! side, so that a scene seen in a mirror has no more acne than the scene itself.
 
 use glam::{DMat4, DVec3, Mat4, Vec3};
 use shadow_support::camera::{Camera, Lens};
@@ -28,8 +28,8 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
 }
 ";
 
-/// Describes how the scene is looked at: the camera as the library knows it, and the transforms of space before it and
-/// of clip space after it.
+/// Describes how the scene is looked at: the camera as the library knows it, and the transforms of
+/// space before it and of clip space after it.
 struct View {
     name: &'static str,
     camera: Camera,
@@ -138,14 +138,15 @@ fn meshes() -> [Mesh; 3] {
     ]
 }
 
-/// Holds the pixels whose truth is the same over the whole footprint of a lookup, by that truth: dark or lit.
+/// Holds the pixels whose truth is the same over the whole footprint of a lookup, by that truth:
+/// dark or lit.
 struct Settled {
     dark: Vec<[u32; 2]>,
     lit: Vec<[u32; 2]>,
 }
 
-/// Returns what rays find for each pixel of a view. `footprint` is the reach of a lookup across the light, in world
-/// units.
+/// Returns what rays find for each pixel of a view. `footprint` is the reach of a lookup across the
+/// light, in world units.
 fn settled(scene: &Scene, view: &View, footprint: f64) -> Settled {
     let toward_light = -LIGHT.as_dvec3().normalize();
     let side = toward_light.any_orthonormal_vector();
@@ -183,7 +184,8 @@ fn settled(scene: &Scene, view: &View, footprint: f64) -> Settled {
                         normal.dot(other_normal) > 0.999 && normal.dot(other - place).abs() < 1e-6
                     })
                 });
-            // On a face that turns away from the light, or nearly so, the footprint extends over everything around it.
+            // On a face that turns away from the light, or nearly so, the footprint extends over
+            // everything around it.
             if !same_plane || normal.dot(toward_light) < 0.15 {
                 continue;
             }
@@ -237,7 +239,8 @@ fn a_mirror_shows_no_acne() {
         .next()
         .expect("a view")
         .texel_size_world();
-    // The footprint is the tent's reach, and a texel more for the offset and the caster's rasterisation.
+    // The footprint is the tent's reach, and a texel more for the offset and the caster's
+    // rasterisation.
     let footprint = 3.0 * f64::from(texel.max_element()) * std::f64::consts::SQRT_2;
     let bindings = ShadowBindings::new(
         &gpu.device,

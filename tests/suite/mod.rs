@@ -2,6 +2,7 @@
 
 mod any_input;
 mod automatic_layout;
+mod backends;
 mod beside_engine_buffers;
 mod binding_errors;
 mod blending;
@@ -39,6 +40,7 @@ mod hard_cases;
 mod keeping;
 mod kept_origin;
 mod local_reach;
+mod local_receiver_parity;
 mod mesh_errors;
 mod mesh_geometry;
 mod mesh_pipelines;
@@ -46,6 +48,7 @@ mod mirrored_views;
 mod never_stale;
 mod omni;
 mod omni_input;
+
 mod out_of_range;
 mod own_layout;
 mod pass_state;

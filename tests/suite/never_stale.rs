@@ -1,6 +1,7 @@
-//! Compares maps that are kept, wholly or in part, with maps that are drawn completely: the bits are the same, over
-//! thousands of random frames. The tests run on Vulkan alone: wgpu's OpenGL backend copies no depth textures, so it has
-//! no static-caster caches there, and reading maps back is slow.
+//! Compares maps that are kept, wholly or in part, with maps that are drawn completely: the bits
+//! are the same, over thousands of random frames. The tests run on Vulkan alone: wgpu's OpenGL
+//! backend copies no depth textures, so it has no static-caster caches there, and reading maps back
+//! is slow.
 
 use glam::{DVec3, Mat4, Vec3};
 use shadow_support::camera::Camera;
@@ -18,7 +19,8 @@ use crate::fixtures::gpu::{Gpu, vulkan};
 use crate::fixtures::multiview::{device, is_right};
 use crate::fixtures::texture_bytes::TextureBytes;
 
-/// Holds boxes of which some move, all move, or none does, for some frames each; some appear and disappear.
+/// Holds boxes of which some move, all move, or none does, for some frames each; some appear and
+/// disappear.
 struct Crowd {
     casters: Vec<MeshCaster>,
     shown: Vec<bool>,
@@ -72,8 +74,8 @@ impl Crowd {
     }
 }
 
-/// Is a mesh that does not report its triangles: it is never copied from a static-caster cache, nor drawn into six
-/// faces at once.
+/// Is a mesh that does not report its triangles: it is never copied from a static-caster cache, nor
+/// drawn into six faces at once.
 struct Untold<'a>(&'a dyn ShadowCaster);
 
 impl ShadowCaster for Untold<'_> {
@@ -136,7 +138,8 @@ fn throw_away<F, L: RecordFrame<F>>(gpu: &Gpu, lights: [&mut L; 2], frame: &F) {
     }
 }
 
-/// The camera and the light are still most of the time and sometimes jump; sometimes an encoder is dropped.
+/// The camera and the light are still most of the time and sometimes jump; sometimes an encoder is
+/// dropped.
 #[test]
 fn kept_maps_of_a_sun_are_what_would_be_drawn() {
     for (format, frames) in [(DepthFormat::Float32, 1500), (DepthFormat::Unorm16, 500)] {
@@ -210,8 +213,8 @@ fn kept_maps_of_a_sun_are_what_would_be_drawn() {
     }
 }
 
-/// The same holds for the six faces of a point light that sometimes jumps: drawn in one pass or in a pass each,
-/// whichever is cheaper, they equal those of a pass each.
+/// The same holds for the six faces of a point light that sometimes jumps: drawn in one pass or in
+/// a pass each, whichever is cheaper, they equal those of a pass each.
 #[test]
 fn kept_faces_of_a_lamp_are_what_would_be_drawn() {
     let gpu = device();

@@ -1,5 +1,5 @@
-//! Tests point lights: no seam between the faces shows, the shadows are where a ray caster has them, and the faces cost
-//! no more than they must.
+//! Tests point lights: no seam between the faces shows, the shadows are where a ray caster has
+//! them, and the faces cost no more than they must.
 
 use glam::{DVec3, Vec3};
 use shadow_support::camera::Camera;
@@ -19,7 +19,8 @@ use crate::fixtures::local_truth::settled;
 use crate::fixtures::scene::Scene;
 use crate::fixtures::table;
 
-/// Makes all of space receive, so that every caster is drawn, including a flat wall with nothing behind it.
+/// Makes all of space receive, so that every caster is drawn, including a flat wall with nothing
+/// behind it.
 const EVERYWHERE: [Aabb; 1] = [Aabb::new(Vec3::splat(-40.0), Vec3::splat(40.0))];
 
 /// Holds a light and the probe that samples it.
@@ -66,8 +67,8 @@ impl Lamp {
         record_omni(gpu, &mut self.shadow, &frame).expect("a valid frame")
     }
 
-    /// Returns how many of the points are in shadow, and how dark the darkest is. Visibilities one step of 8 bits below
-    /// 1 count as 1.
+    /// Returns how many of the points are in shadow, and how dark the darkest is. Visibilities one
+    /// step of 8 bits below 1 count as 1.
     fn false_shadows(&self, gpu: &Gpu, points: &[Point]) -> (usize, f32) {
         let seen = self.ask.points(gpu, points);
         let lit = 1.0 - 1.0 / 255.0..=1.0;
@@ -76,8 +77,8 @@ impl Lamp {
     }
 }
 
-/// Returns directions to the seams: along the twelve edges between two faces and into the eight corners, the tie itself
-/// (exact in f32) and positions up to five texels beside it.
+/// Returns directions to the seams: along the twelve edges between two faces and into the eight
+/// corners, the tie itself (exact in f32) and positions up to five texels beside it.
 fn seam_directions(texel: f64) -> Vec<DVec3> {
     let beside = [0.0, 1e-7, 0.2, 0.5, 1.0, 1.7, 2.5, 5.0].map(|texels| texels * texel);
     let mut directions = Vec::new();
@@ -104,9 +105,9 @@ fn seam_directions(texel: f64) -> Vec<DVec3> {
     directions
 }
 
-/// Returns the points where rays from the light into the seams first meet the triangles, with the normal of the lit
-/// side. Points nearer to the border of their triangle than a kernel reaches (`border`, a tangent) are omitted where
-/// the neighbouring triangle has another inclination.
+/// Returns the points where rays from the light into the seams first meet the triangles, with the
+/// normal of the lit side. Points nearer to the border of their triangle than a kernel reaches
+/// (`border`, a tangent) are omitted where the neighbouring triangle has another inclination.
 fn seam_points(triangles: &[Triangle], light: DVec3, texel: f64, border: f64) -> Vec<Point> {
     let mut points = Vec::new();
     for direction in seam_directions(texel) {
@@ -152,8 +153,9 @@ fn planar_samplings() -> impl Iterator<Item = (Filter, Bias)> {
 
 const SEAM_MAP: u32 = 250;
 
-/// Returns planes around the light that all extend across seams and corners, one at a time: six along the axes at a
-/// distance that makes ties exact, and oblique ones; and a sphere of large facets around the light.
+/// Returns planes around the light that all extend across seams and corners, one at a time: six
+/// along the axes at a distance that makes ties exact, and oblique ones; and a sphere of large
+/// facets around the light.
 fn seam_scenes(gpu: &Gpu) -> Vec<(String, Scene, DVec3, Vec<Point>)> {
     let texel = 2.0 / f64::from(SEAM_MAP);
     let mut random = Random::new(41);
@@ -174,8 +176,9 @@ fn seam_scenes(gpu: &Gpu) -> Vec<(String, Scene, DVec3, Vec<Point>)> {
     }
     let sphere = Mesh::sphere(Vec3::new(0.4, 1.1, -0.1), 3.0, 5);
     let scene = Scene::new(gpu, &[sphere]);
-    // Facets lean toward each other: a kernel of the widest filter, its border and a texel of rounding stay on one
-    // facet. Texels grow toward the corners of a face, by the square root of three at most.
+    // Facets lean toward each other: a kernel of the widest filter, its border and a texel of
+    // rounding stay on one facet. Texels grow toward the corners of a face, by the square root of
+    // three at most.
     let points = seam_points(&scene.triangles, light, texel, 6.0 * texel * 3.0_f64.sqrt());
     assert!(points.len() > 300, "sphere: {} points", points.len());
     scenes.push(("sphere".to_owned(), scene, light, points));
@@ -192,7 +195,8 @@ fn seams_are_lit() {
         for (name, scene, light, points) in &scenes {
             let report = lamp.record(gpu, scene, *light, None, &EVERYWHERE);
             assert!(report.passes >= 3, "{name}: {report:?}");
-            // PCSS searches for occluders up to 33 texels around, and on a sphere it finds the other facets.
+            // PCSS searches for occluders up to 33 texels around, and on a sphere it finds the
+            // other facets.
             if matches!(filter, Filter::Pcss { .. }) && name == "sphere" {
                 continue;
             }
@@ -219,7 +223,8 @@ fn seams_are_lit() {
     );
 }
 
-/// The same receivers are in the maps, on both sides of every seam: without a bias they shadow themselves.
+/// The same receivers are in the maps, on both sides of every seam: without a bias they shadow
+/// themselves.
 #[test]
 fn seams_would_shadow_themselves() {
     let gpu = gpu();
@@ -275,8 +280,8 @@ fn shadows_are_where_rays_have_them() {
         let mut lamp = Lamp::new(gpu, MAP, filter, bias);
         for light in [DVec3::new(0.21, 0.1, -0.13), DVec3::new(-3.1, 2.9, -2.2)] {
             lamp.record(gpu, &scene, light, None, &EVERYWHERE);
-            // The distance is the reach, half a texel of stairs, and the residual offset; toward a face's corner along
-            // both axes at once.
+            // The distance is the reach, half a texel of stairs, and the residual offset; toward a
+            // face's corner along both axes at once.
             let texels = (filter.reach_texels() + 1.5) * 2.0_f64.sqrt() * 1.05;
             let tangent = texels * 2.0 / f64::from(MAP);
             let all = |_: DVec3| true;
@@ -289,8 +294,8 @@ fn shadows_are_where_rays_have_them() {
     }
 }
 
-/// Beyond the range everything is lit, and up to it the shadow is there: the border lies within the rounding of a
-/// squared distance.
+/// Beyond the range everything is lit, and up to it the shadow is there: the border lies within the
+/// rounding of a squared distance.
 #[test]
 fn shadows_end_at_the_range() {
     let gpu = gpu();
@@ -390,7 +395,8 @@ fn faces_that_no_camera_sees_are_empty() {
             assert_eq!(is_empty, face != index, "{axis}: {report:?}");
         }
         if index == 0 {
-            // Other light-space bounds have other texels; along a straight edge they blur over at most one texel.
+            // Other light-space bounds have other texels; along a straight edge they blur over at
+            // most one texel.
             let after = lamp.ask.points(gpu, &points);
             let differ = before.iter().zip(&after).filter(|(a, b)| a != b).count();
             assert!(differ <= 6, "{differ} of 50 differ: {before:?} {after:?}");

@@ -1,4 +1,5 @@
-//! Tests bad and unusual input of point lights: it is refused with field and value, or every result is a visibility.
+//! Tests bad and unusual input of point lights: it is refused with field and value, or every result
+//! is a visibility.
 
 use glam::{DVec3, Vec3};
 use shadow_support::mesh::Mesh;
@@ -77,7 +78,8 @@ fn radii_that_no_filter_has() {
     }
 }
 
-/// Each bad frame is refused by name, and leaves the maps, the report and the visibilities of the last valid one.
+/// Each bad frame is refused by name, and leaves the maps, the report and the visibilities of the
+/// last valid one.
 #[test]
 fn frames_that_are_refused_change_nothing() {
     let gpu = gpu();
@@ -166,8 +168,9 @@ fn frames_that_are_refused_change_nothing() {
     }
 }
 
-/// Lights at unusual positions and of unusual reach are refused with an error, or every result is a visibility. They
-/// are on a vertex, on a surface, on an edge, inside a solid, near zero and near infinity.
+/// Lights at unusual positions and of unusual reach are refused with an error, or every result is a
+/// visibility. They are on a vertex, on a surface, on an edge, inside a solid, near zero and near
+/// infinity.
 #[test]
 fn odd_lights_get_visibilities() {
     let gpu = gpu();
@@ -255,7 +258,8 @@ fn odd_lights_get_visibilities() {
     );
 }
 
-/// A light on the floor shines over it, and one on a face of a box leaves the other sides of the box dark.
+/// A light on the floor shines over it, and one on a face of a box leaves the other sides of the
+/// box dark.
 #[test]
 fn lights_on_surfaces() {
     let gpu = gpu();
@@ -280,8 +284,8 @@ fn lights_on_surfaces() {
             .any(|view| view.status == ViewStatus::Drawn)
     );
     let floor = |x, z| Point::new(Vec3::new(x, -1.0, z), Vec3::Y);
-    // On the side to which the light shines, receivers are lit. Behind the box they are dark: the face on which the
-    // light lies cannot cast, but the face opposite to it does.
+    // On the side to which the light shines, receivers are lit. Behind the box they are dark: the
+    // face on which the light lies cannot cast, but the face opposite to it does.
     let points = [floor(-2.0, 0.3), floor(0.2, -3.0), floor(4.0, 0.0)];
     assert_eq!(ask.points(gpu, &points), [1.0, 1.0, 0.0]);
 }

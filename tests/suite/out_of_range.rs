@@ -1,4 +1,5 @@
-//! Tests that positions that no map covers are lit, and that nothing that can cast is cut off from the map.
+//! Tests that positions that no map covers are lit, and that nothing that can cast is cut off from
+//! the map.
 
 use glam::{DVec2, DVec3, Mat4, Vec3};
 use shadow_support::camera::Camera;
@@ -119,8 +120,8 @@ fn receivers_around_the_map_are_lit() {
         hall.assert_all(&below, 1.0, "beyond the far plane");
         let above = moved(&|place| *place + toward_light * range);
         hall.assert_all(&above, 1.0, "before the near plane");
-        // These positions are above the roof and still within the map's depth range: they are lit by comparison, not by
-        // a limit.
+        // These positions are above the roof and still within the map's depth range: they are lit
+        // by comparison, not by a limit.
         let on_top = moved(&|place| *place + toward_light * (2.4 / toward_light.y));
         hall.assert_all(&on_top, 1.0, "on the roof");
     }
@@ -131,8 +132,9 @@ fn receivers_around_the_map_are_lit() {
     );
 }
 
-/// Toward the border the visibility changes once, from the roof's shadow to light, before the kernel would leave the
-/// map. No texel from outside ever contributes, and no more of the map is left unused than kernel and bias can need.
+/// Toward the border the visibility changes once, from the roof's shadow to light, before the
+/// kernel would leave the map. No texel from outside ever contributes, and no more of the map is
+/// left unused than kernel and bias can need.
 #[test]
 fn the_border_is_where_the_kernel_ends() {
     const STEPS: usize = 4000;
@@ -146,7 +148,8 @@ fn the_border_is_where_the_kernel_ends() {
             let opposite = DVec2::splat(f64::from(MAP_SIZE)) - texel;
             texel.min(opposite).min_element()
         };
-        // The bias moves a receiver across the map before it is sampled; the CPU reference computes where to.
+        // The bias moves a receiver across the map before it is sampled; the CPU reference computes
+        // where to.
         let looked_up = |place: DVec3| {
             let place = place.as_vec3().as_dvec3();
             from_side(receiver(&uniform, filter, hall.bias, place, DVec3::Y).texel)
@@ -171,7 +174,8 @@ fn the_border_is_where_the_kernel_ends() {
             assert!(seen[first_lit..].iter().all(|v| *v == 1.0), "{}", hall.name);
             let reach = filter.reach_texels();
             let last = looked_up(places[first_lit - 1]);
-            // 1e-4 texels are more than the error of f32 in a map of this size (`fixtures/rounding.rs`).
+            // 1e-4 texels are more than the error of f32 in a map of this size
+            // (`fixtures/rounding.rs`).
             assert!(last >= reach - 1e-4, "{}: {last} < {reach}", hall.name);
             // |nx| + |ny| of the normal is at most the square root of two.
             let sideways =
@@ -229,7 +233,8 @@ fn receivers_that_are_not_numbers_get_an_answer() {
     );
 }
 
-/// Holds a floor, and a slab three kilometres away toward the light, with nothing between it and the camera's volume.
+/// Holds a floor, and a slab three kilometres away toward the light, with nothing between it and
+/// the camera's volume.
 struct FarSlab {
     scene: Scene,
     light: DVec3,
@@ -289,8 +294,8 @@ fn a_caster_three_kilometres_up_casts() {
     let mut places = Vec::new();
     for _ in 0..2000 {
         let place = random.point(DVec3::new(-12.0, 0.0, -12.0), DVec3::new(12.0, 0.0, 12.0));
-        // Three texels are more than the default's two; the slanting light stretches them on the ground by less than
-        // two.
+        // Three texels are more than the default's two; the slanting light stretches them on the
+        // ground by less than two.
         let around = [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z].map(|d| d * 6.0 * texel);
         let blocked = |at: DVec3| occluded(&slab.scene.triangles, at, -slab.light, 1e-6);
         let here = blocked(place);
@@ -317,7 +322,8 @@ fn a_caster_three_kilometres_up_casts() {
     );
 }
 
-/// The optional feature changes nothing: the map is the same, bit for bit, on a device with it and on one without it.
+/// The optional feature changes nothing: the map is the same, bit for bit, on a device with it and
+/// on one without it.
 #[test]
 fn depth_clip_control_changes_nothing() {
     let with_feature = own_gpu(GpuRequest {
@@ -341,7 +347,8 @@ fn depth_clip_control_changes_nothing() {
 
 #[test]
 fn an_identity_camera_sees_the_clip_volume() {
-    // A camera whose matrices are both the identity sees the box -1..1, -1..1, 0..1: the simplest projection.
+    // A camera whose matrices are both the identity sees the box -1..1, -1..1, 0..1: the simplest
+    // projection.
     let gpu = gpu();
     let scene = Scene::new(
         gpu,

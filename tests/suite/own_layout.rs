@@ -1,5 +1,5 @@
-//! Tests that an engine with its own bindings, such as `examples/own_layout.rs`, gets the same visibilities as from
-//! `ShadowBindings`, to the bit.
+//! Tests that an engine with its own bindings, such as `examples/own_layout.rs`, gets the same
+//! visibilities as from `ShadowBindings`, to the bit.
 
 use glam::{DVec3, Vec3};
 use shadow_support::bind;

@@ -6,8 +6,8 @@ use wgpu_shadows::reference::{self, DepthLayer, Receiver};
 
 use super::penumbra::{Profile, STEPS, beyond_chord};
 
-/// The CPU reference agrees with the closed form as well, so that a wrong device cannot be hidden by a wrong reference:
-/// over an ideal map, with either pattern.
+/// The CPU reference agrees with the closed form as well, so that a wrong device cannot be hidden
+/// by a wrong reference: over an ideal map, with either pattern.
 #[test]
 fn the_reference_spreads_as_the_closed_form() {
     const SIZE: u32 = 128;

@@ -1,5 +1,5 @@
-//! Tests `Filter::PcssRotated`: it is as wide and as accurate as the fixed pattern, with noise that is fixed in the
-//! world.
+//! Tests `Filter::PcssRotated`: it is as wide and as accurate as the fixed pattern, with noise that
+//! is fixed in the world.
 
 use glam::{DVec3, Vec2};
 use shadow_support::camera::Camera;
@@ -15,7 +15,8 @@ use crate::fixtures::probe::record;
 use crate::fixtures::scene::Scene;
 use crate::fixtures::view_member::member;
 
-/// Widths are within 10 % of the closed form and the rmse is at most 0.05, as for the fixed pattern.
+/// Widths are within 10 % of the closed form and the rmse is at most 0.05, as for the fixed
+/// pattern.
 #[test]
 fn turned_penumbrae_are_as_wide_as_the_light_makes_them() {
     for (height, diameter, map_size) in [(1.0, 0.2, 512), (3.0, 0.2, 512), (1.0, 0.5, 700)] {
@@ -27,8 +28,9 @@ fn turned_penumbrae_are_as_wide_as_the_light_makes_them() {
     }
 }
 
-/// While the light-space bounds move under a walking camera and keep their texels, a position of the world keeps its
-/// cell of the grid, which rotates its patterns. Positions at the border of two cells are omitted.
+/// While the light-space bounds move under a walking camera and keep their texels, a position of
+/// the world keeps its cell of the grid, which rotates its patterns. Positions at the border of two
+/// cells are omitted.
 #[test]
 fn the_grain_is_fixed_in_the_world() {
     let gpu = gpu();

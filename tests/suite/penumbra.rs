@@ -1,9 +1,11 @@
-//! Tests `Filter::Pcss`: the device against the CPU reference, and both against the true shadow of a light with a size.
+//! Tests `Filter::Pcss`: the device against the CPU reference, and both against the true shadow of
+//! a light with a size.
 //!
-//! The closed form is this: a half-plane whose edge hides a disk-shaped light transmits the part of the disk that lies
-//! beyond a chord. With t the distance of a receiver from the middle of the penumbra divided by the half-width R of the
-//! penumbra, that is 1/2 + (t √(1 - t²) + asin t) / π. A sun of angular diameter a spreads R = h tan(a/2) under an edge
-//! of height h; a disk of radius r at height H spreads R = r h / (H - h).
+//! The closed form is this: a half-plane whose edge hides a disk-shaped light transmits the part of
+//! the disk that lies beyond a chord. With t the distance of a receiver from the middle of the
+//! penumbra divided by the half-width R of the penumbra, that is 1/2 + (t √(1 - t²) + asin t) / π.
+//! A sun of angular diameter a spreads R = h tan(a/2) under an edge of height h; a disk of radius r
+//! at height H spreads R = r h / (H - h).
 
 use std::f64::consts::PI;
 
@@ -26,14 +28,15 @@ use crate::fixtures::scene::Scene;
 use crate::fixtures::table;
 use crate::suite::filter_parity::{Lit, at_border, place, points, scene};
 
-/// Is the error of the samples' positions: WGSL guarantees sine and cosine to 2^-11 of the unit circle, and the widest
-/// disk is 32 texels.
+/// Is the error of the samples' positions: WGSL guarantees sine and cosine to 2^-11 of the unit
+/// circle, and the widest disk is 32 texels.
 const SAMPLE_ERROR_TEXELS: f64 = 32.0 / 2048.0;
 
-/// Each result lies between the least and the greatest of the CPU reference's around the receiver: at the corners of
-/// its rounding band, widened by the error of the samples' positions. A single sample can fall to the other side of a
-/// texel's border, which changes the mean height of the occluders, and with it the radius, by a fraction of itself; one
-/// in a hundred results may be off by that.
+/// Each result lies between the least and the greatest of the CPU reference's around the receiver:
+/// at the corners of its rounding band, widened by the error of the samples' positions. A single
+/// sample can fall to the other side of a texel's border, which changes the mean height of the
+/// occluders, and with it the radius, by a fraction of itself; one in a hundred results may be off
+/// by that.
 #[test]
 fn penumbrae_are_those_of_the_reference() {
     let gpu = gpu();
@@ -123,12 +126,13 @@ fn chord_of(share: f64) -> f64 {
     low
 }
 
-/// Is the number of positions along x from -2R to 2R, on lines along z whose starts are spread over a texel.
+/// Is the number of positions along x from -2R to 2R, on lines along z whose starts are spread over
+/// a texel.
 pub(super) const STEPS: usize = 161;
 const LINES: usize = 12;
 
-/// Holds the visibilities across an edge at x = 0 under rotation by `turn` around y, against the closed form of
-/// half-width `radius`.
+/// Holds the visibilities across an edge at x = 0 under rotation by `turn` around y, against the
+/// closed form of half-width `radius`.
 pub(super) struct Profile {
     /// Is the mean over the lines at each step.
     mean: Vec<f64>,
@@ -209,7 +213,8 @@ fn half_plane(gpu: &Gpu, height: f64, turn: f64) -> Scene {
     Scene::new(gpu, &[Mesh::floor(0.0, 4.0), sheet])
 }
 
-/// Returns the profile of a sun whose penumbra has a half-width of `radius` texels of a map over 8 metres.
+/// Returns the profile of a sun whose penumbra has a half-width of `radius` texels of a map over 8
+/// metres.
 pub(super) fn sun_profile(
     gpu: &Gpu,
     height: f64,
@@ -259,7 +264,8 @@ fn a_sun_spreads_as_its_diameter_says() {
                 light_size: diameter,
             };
             let (profile, texels) = sun_profile(gpu, height, filter, map_size, turn);
-            // The penumbra is wider than the tent that replaces narrow ones, and narrower than the limit of 32 texels.
+            // The penumbra is wider than the tent that replaces narrow ones, and narrower than the
+            // limit of 32 texels.
             assert!((4.0..30.0).contains(&texels), "{texels}");
             let name =
                 format!("height {height} diameter {diameter} turn {turn:.1} ({texels:.1} texels)");
@@ -312,8 +318,8 @@ fn a_spot_spreads_as_its_radius_says() {
     );
 }
 
-/// The side of the shadow next to the foot of a wall is hard, within the two texels of the tent; two metres further it
-/// is as wide as the light makes it.
+/// The side of the shadow next to the foot of a wall is hard, within the two texels of the tent;
+/// two metres further it is as wide as the light makes it.
 #[test]
 fn shadows_are_hard_where_the_caster_touches() {
     let gpu = gpu();
@@ -326,7 +332,8 @@ fn shadows_are_hard_where_the_caster_touches() {
         ..Default::default()
     };
     let mut shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");
-    // The wall is a sheet: of a thick wall a map contains the front, and the blur follows the front's distance.
+    // The wall is a sheet: of a thick wall a map contains the front, and the blur follows the
+    // front's distance.
     let wall = Mesh::sheet(Vec3::new(0.0, 0.0, -9.0), Vec3::Z * 9.0, Vec3::Y * 6.0);
     let scene = Scene::new(gpu, &[Mesh::floor(0.0, 4.0), wall]);
     let frame = DirectionalFrame {
@@ -342,8 +349,8 @@ fn shadows_are_hard_where_the_caster_touches() {
     let report = record(gpu, &mut shadow, &frame);
     let texel = report.views[0].texel_size_world.max_element();
     let probe = SunProbe::new(gpu, &shadow);
-    // This counts, along z across the side of the shadow, at a distance from the wall, how much of it is neither dark
-    // nor lit.
+    // This counts, along z across the side of the shadow, at a distance from the wall, how much of
+    // it is neither dark nor lit.
     let partial = |distance: f32, half: f32| {
         let points: Vec<_> = (0..400)
             .map(|step| half * (step as f32 / 199.5 - 1.0))

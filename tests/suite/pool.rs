@@ -1,5 +1,5 @@
-//! Tests pools: slots cannot be confused, lights give the visibilities that they would give alone, and static ones cost
-//! nothing.
+//! Tests pools: slots cannot be confused, lights give the visibilities that they would give alone,
+//! and static ones cost nothing.
 
 use glam::{DVec3, Mat4, Vec3};
 use shadow_support::mesh::Mesh;
@@ -165,8 +165,8 @@ const PLACES: [DVec3; 3] = [
     DVec3::new(3.5, 4.0, -1.0),
 ];
 
-/// Each light of a pool has the visibilities of the same light alone, to the bit; slots that no light has, and indices
-/// that no slot has, are lit.
+/// Each light of a pool has the visibilities of the same light alone, to the bit; slots that no
+/// light has, and indices that no slot has, are lit.
 #[test]
 fn lamps_see_what_they_see_alone() {
     let gpu = gpu();
@@ -249,8 +249,8 @@ fn spots_see_what_they_see_alone() {
     }
 }
 
-/// Sixty-four point lights in two pools shine on a static scene: from the second frame on nothing is drawn and no
-/// caster's `draw` is called.
+/// Sixty-four point lights in two pools shine on a static scene: from the second frame on nothing
+/// is drawn and no caster's `draw` is called.
 #[test]
 fn still_lamps_cost_nothing() {
     let gpu = gpu();
@@ -312,8 +312,9 @@ fn the_wgsl_does_not_grow_with_the_lights() {
     });
     assert_eq!(texts[0].0, texts[1].0);
     assert_eq!(texts[0].1, texts[1].1);
-    // The numbers of views, 12 and 192, and the last index, 1 and 31, differ by a digit wherever they
-    // occur. Each of the four functions of the pool reads what all views have in common at some places.
+    // The numbers of views, 12 and 192, and the last index, 1 and 31, differ by a digit wherever
+    // they occur. Each of the four functions of the pool reads what all views have in common at
+    // some places.
     assert!(
         texts[1].2 - texts[0].2 <= 24,
         "{} bytes more",

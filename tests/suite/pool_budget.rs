@@ -1,5 +1,5 @@
-//! Tests pools with a budget: the most important lights come first, none waits for ever, and deferred ones keep their
-//! last map.
+//! Tests pools with a budget: the most important lights come first, none waits for ever, and
+//! deferred ones keep their last map.
 
 use glam::{DVec3, Mat4, Vec3};
 use shadow_support::mesh::Mesh;
@@ -32,7 +32,8 @@ impl Row {
             let place = Vec3::new(index as f32 * 100.0, 2.0, 0.0);
             let slot = pool.insert().expect("a free slot");
             let mut light = lamp(slot, place.as_dvec3(), *importance);
-            // The light reaches the slab below it and nothing else, so that each needs one view per frame.
+            // The light reaches the slab below it and nothing else, so that each needs one view per
+            // frame.
             light.light.range = 10.0;
             lights.push(light);
             let low = place - Vec3::new(0.2, 1.1, 0.2);
@@ -114,7 +115,8 @@ fn the_most_important_are_refreshed_first() {
     row.move_slabs(0.3);
     assert_eq!(row.record(gpu, Some(2)), [1, 3]);
     for (light, before) in before.iter().enumerate() {
-        // Deferred lights show their last map to the bit, though their slabs have moved; the others do not.
+        // Deferred lights show their last map to the bit, though their slabs have moved; the others
+        // do not.
         let same = bits(&row.seen(gpu, light)) == bits(before);
         assert_eq!(same, light == 0 || light == 2, "light {light}");
     }
@@ -128,15 +130,17 @@ fn the_most_important_are_refreshed_first() {
         .collect();
     let deferred = |light: usize| statuses[6 * light..][..6].contains(&ViewStatus::Deferred);
     assert_eq!([0, 1, 2, 3].map(deferred), [true, false, true, false]);
-    // Lights that need nothing any longer take no part in the budget: the deferred ones are refreshed.
+    // Lights that need nothing any longer take no part in the budget: the deferred ones are
+    // refreshed.
     assert_eq!(row.record(gpu, Some(1)), [2]);
     assert_eq!(row.record(gpu, Some(1)), [0]);
     assert_eq!(row.record(gpu, Some(1)), []);
 }
 
-/// All lights change in every frame. The urgency of a waiting light grows by its importance in each frame, and that of
-/// the others starts again when they are refreshed. With importances of 1 to 8, the least waits 8 frames until it
-/// equals the first, and at most as many more as there are others before it.
+/// All lights change in every frame. The urgency of a waiting light grows by its importance in each
+/// frame, and that of the others starts again when they are refreshed. With importances of 1 to 8,
+/// the least waits 8 frames until it equals the first, and at most as many more as there are others
+/// before it.
 #[test]
 fn none_starves() {
     let gpu = gpu();
@@ -161,7 +165,8 @@ fn none_starves() {
     }
 }
 
-/// A light that moves while it is deferred keeps its last map as well, even where its views have something to draw.
+/// A light that moves while it is deferred keeps its last map as well, even where its views have
+/// something to draw.
 #[test]
 fn a_deferred_light_answers_from_its_last_place() {
     let gpu = gpu();
@@ -177,7 +182,8 @@ fn a_deferred_light_answers_from_its_last_place() {
     assert_eq!(bits(&row.seen(gpu, 0)), bits(&before));
 }
 
-/// A light that has never been drawn is lit until it is refreshed, and its report says that it is deferred.
+/// A light that has never been drawn is lit until it is refreshed, and its report says that it is
+/// deferred.
 #[test]
 fn a_new_light_is_lit_until_its_turn() {
     let gpu = gpu();
@@ -192,7 +198,8 @@ fn a_new_light_is_lit_until_its_turn() {
     assert!(row.seen(gpu, 0).contains(&0.0));
 }
 
-/// A light that was not listed for a frame, and is deferred when it is listed again, shows the map that it had.
+/// A light that was not listed for a frame, and is deferred when it is listed again, shows the map
+/// that it had.
 #[test]
 fn a_light_that_comes_back_shows_its_last_map() {
     let gpu = gpu();
@@ -209,8 +216,8 @@ fn a_light_that_comes_back_shows_its_last_map() {
     assert_eq!(bits(&row.seen(gpu, 0)), bits(&before));
 }
 
-/// An encoder that is dropped takes the maps with it: a light that is deferred after `invalidate` has none, and is lit.
-/// The map that is still in its layer was drawn from another position.
+/// An encoder that is dropped takes the maps with it: a light that is deferred after `invalidate`
+/// has none, and is lit. The map that is still in its layer was drawn from another position.
 #[test]
 fn a_light_whose_map_was_thrown_away_is_lit_until_its_turn() {
     let gpu = gpu();
@@ -234,8 +241,8 @@ fn a_light_whose_map_was_thrown_away_is_lit_until_its_turn() {
     assert!(row.seen(gpu, 0).contains(&0.0));
 }
 
-/// The state of a pool, as text, is as long after 300 frames as after 100, though a light waits through all of them
-/// with fewer views to draw than it shows. (Numbers in it grow by some digits.)
+/// The state of a pool, as text, is as long after 300 frames as after 100, though a light waits
+/// through all of them with fewer views to draw than it shows. (Numbers in it grow by some digits.)
 #[test]
 fn waiting_costs_no_memory() {
     let gpu = gpu();
@@ -270,8 +277,8 @@ fn waiting_costs_no_memory() {
     assert!(lengths[2] < lengths[0] + 400, "{lengths:?}");
 }
 
-/// Drawing the static-caster cache of a layer takes a pass of its own, which counts like any other. (wgpu's OpenGL
-/// backend copies no depth textures, so there is none.)
+/// Drawing the static-caster cache of a layer takes a pass of its own, which counts like any other.
+/// (wgpu's OpenGL backend copies no depth textures, so there is none.)
 #[test]
 fn no_frame_draws_more_passes_than_the_budget() {
     let gpu = gpu();

@@ -16,12 +16,14 @@ use crate::suite::pool::frame;
 /// Is the least importance that a light counts for, as a fraction of the greatest.
 const LEAST_SHARE: f64 = 1.0 / 4096.0;
 
-/// Returns the largest number of frames from one refresh to the next of a light among `importances`, all of which
-/// change in every frame under a budget of one view.
+/// Returns the largest number of frames from one refresh to the next of a light among
+/// `importances`, all of which change in every frame under a budget of one view.
 ///
-/// Let `w` be its weight, `W` the greatest, and `n` their number. From the frame `K` on in which `w (1 + K) > (n - 1)
-/// W`, a light that precedes it has waited for at least `n - 1` frames, since otherwise its own product is at most `(n
-/// - 1) W`. So in `n - 1` such frames all the others are refreshed, once each, and then none is left to precede it.
+/// Let `w` be its weight, `W` the greatest, and `n` their number. From the frame `K` on in which
+/// `w (1 + K) > (n - 1) W`, a light that precedes it has waited for at least `n - 1` frames, since
+/// otherwise its own product is at most `(n
+/// - 1) W`. So in `n -
+///   1` such frames all the others are refreshed, once each, and then none is left to precede it.
 fn longest_wait(importances: &[f32], light: usize) -> usize {
     let greatest = importances.iter().copied().fold(0.0, f32::max);
     let weight = f64::from(importances[light]).max(f64::from(greatest) * LEAST_SHARE);
@@ -114,7 +116,8 @@ fn none_above_zero_starves_at_any_finite_importance() {
     }
 }
 
-/// A light of importance zero is refreshed from what the others leave, however small their importance.
+/// A light of importance zero is refreshed from what the others leave, however small their
+/// importance.
 #[test]
 fn a_light_at_zero_waits_for_all_others() {
     let steps = drawn(&[0.0, 1e-45, f32::MAX], 1, 200);
@@ -124,7 +127,8 @@ fn a_light_at_zero_waits_for_all_others() {
     assert_eq!(steps[0].len(), 20);
 }
 
-/// Within the bound importances count as they are: a light with an eighth waits seven frames until it equals the other.
+/// Within the bound importances count as they are: a light with an eighth waits seven frames until
+/// it equals the other.
 #[test]
 fn importances_within_the_bound_count_as_they_are() {
     for scale in [f32::MIN_POSITIVE, 1.0, 4e37] {

@@ -1,5 +1,5 @@
-//! Tests indices that no slot of a pool has: they are lit, whatever their product with the number of views of a light
-//! is in 32 bits.
+//! Tests indices that no slot of a pool has: they are lit, whatever their product with the number
+//! of views of a light is in 32 bits.
 
 use glam::Vec3;
 use shadow_support::probe::Point;
@@ -11,7 +11,8 @@ use crate::fixtures::lights::{Kind, stage};
 
 const CAPACITY: u32 = 2;
 
-/// Are indices whose products with six are, in 32 bits: past the pool, 0, 2, -6, 2, and 6 for the second light's own.
+/// Are indices whose products with six are, in 32 bits: past the pool, 0, 2, -6, 2, and 6 for the
+/// second light's own.
 const NO_SLOTS: [u32; 6] = [
     CAPACITY,
     0x8000_0000,

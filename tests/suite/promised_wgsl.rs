@@ -1,5 +1,5 @@
-//! Tests that the WGSL has the names that the crate's documentation promises under semver. Shaders such as an engine
-//! writes use each of them.
+//! Tests that the WGSL has the names that the crate's documentation promises under semver. Shaders
+//! such as an engine writes use each of them.
 
 use wgpu_shadows::{Bias, Filter, ShadowBindings, ShadowBindingsDescriptor, shader};
 
@@ -54,6 +54,7 @@ fn names_of_modules_are_there() {
     // `compose` writes a module once, even if it is named twice.
     for (access, map) in [
         ("view", "texture_depth_2d_array"),
+        ("texels_by_offsets", "texture_depth_2d_array"),
         ("texels_by_samples", "texture_2d_array<f32>"),
     ] {
         let kinds = ["directional", "local"];

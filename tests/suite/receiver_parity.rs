@@ -1,5 +1,5 @@
-//! Tests the biases on the device against the CPU reference: the position of a receiver in the map, its depth, its
-//! gradient, and whether the map covers it.
+//! Tests the biases on the device against the CPU reference: the position of a receiver in the map,
+//! its depth, its gradient, and whether the map covers it.
 
 use glam::DVec2;
 use shadow_support::probe::PointShader;
@@ -35,7 +35,10 @@ fn module_of(bias: Bias) -> (&'static str, &'static str) {
 }
 
 /// Creates one bind group with the light's own uniform buffer.
-fn view_group(gpu: &Gpu, buffer: &wgpu::Buffer) -> (wgpu::BindGroupLayout, wgpu::BindGroup) {
+pub(super) fn view_group(
+    gpu: &Gpu,
+    buffer: &wgpu::Buffer,
+) -> (wgpu::BindGroupLayout, wgpu::BindGroup) {
     let layout = gpu
         .device
         .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
@@ -81,7 +84,8 @@ fn receivers_are_those_of_the_reference() {
             let shader = PointShader::new(gpu, &wgsl, "array<vec4<f32>, 2>", &call, &layout);
             let points = points(&scene, 5);
             let answers: Vec<[f32; 8]> = shader.ask(gpu, &group, &points);
-            // These are the largest fractions of the bands that the errors of texel and depth take up.
+            // These are the largest fractions of the bands that the errors of texel and depth take
+            // up.
             let mut used = (0.0_f64, 0.0_f64);
             let (mut edge_on, mut outside) = (0, 0);
             for (point, answer) in points.iter().zip(answers) {
@@ -112,8 +116,8 @@ fn receivers_are_those_of_the_reference() {
             }
             // A band that no error comes near would hide mistakes as large as itself.
             assert!(used.0 > 0.05 && used.1 > 0.05, "{used:?} of the bands");
-            // Random positions with random normals are rarely edge-on, and a quarter of the points lie far around the
-            // map.
+            // Random positions with random normals are rarely edge-on, and a quarter of the points
+            // lie far around the map.
             assert!(edge_on <= 3, "{edge_on} receivers edge on");
             assert!(outside > points.len() / 20, "{outside} receivers outside");
         }

@@ -1,5 +1,5 @@
-//! Tests the CPU reference of the WGSL at the limits of its types: every result is in 0..=1, and nothing panics. Tests
-//! are built with overflow checks, so that an index that wraps is noticed.
+//! Tests the CPU reference of the WGSL at the limits of its types: every result is in 0..=1, and
+//! nothing panics. Tests are built with overflow checks, so that an index that wraps is noticed.
 
 use glam::{DVec2, DVec3};
 use shadow_support::random::Random;
@@ -86,8 +86,8 @@ fn assert_answers(map: &DepthLayer<'_>, receiver: &Receiver) {
     }
 }
 
-/// In a map of which one texel is known, the nearest position is shadowed by it, and the farthest, whose texels are
-/// missing and count as empty, is lit.
+/// In a map of which one texel is known, the nearest position is shadowed by it, and the farthest,
+/// whose texels are missing and count as empty, is lit.
 #[test]
 fn a_layer_of_any_size_has_corners() {
     let at = |place: f64| Receiver {
@@ -113,7 +113,8 @@ fn a_layer_of_any_size_has_corners() {
     }
 }
 
-/// Receivers of any numbers are sampled over maps of any size, and so are receivers on the map, which reach its texels.
+/// Receivers of any numbers are sampled over maps of any size, and so are receivers on the map,
+/// which reach its texels.
 #[test]
 fn any_receiver_has_a_visibility() {
     let mut random = Random::new(31);
@@ -153,7 +154,8 @@ fn any_receiver_has_a_visibility() {
     assert!(shadowed > 100, "{shadowed}");
 }
 
-/// Uniforms have any bits, positions and normals any numbers; the receivers that result are sampled.
+/// Uniforms have any bits, positions and normals any numbers; the receivers that result are
+/// sampled.
 #[test]
 fn any_uniform_has_a_receiver() {
     let mut random = Random::new(32);

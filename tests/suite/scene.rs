@@ -75,8 +75,8 @@ impl Yards {
         Camera::modern(middle + DVec3::new(1.0, 7.0, 9.0), middle, 0.9, 1.5)
     }
 
-    /// Returns positions of a yard's floor that its camera sees and whose truth toward the light is the same for
-    /// `around` world units.
+    /// Returns positions of a yard's floor that its camera sees and whose truth toward the light is
+    /// the same for `around` world units.
     fn settled(&self, yard: usize, toward_light: impl Fn(DVec3) -> DVec3, around: f64) -> Settled {
         let mut random = Random::new(9 + yard as u64);
         let mut settled = Settled::default();
@@ -120,14 +120,15 @@ fn sun(gpu: &Gpu, stability: Stability, cascades: u32) -> DirectionalShadow {
 
 /// Asserts that the visibilities of `shadow` at a yard's settled positions are the truth.
 fn assert_yard(gpu: &Gpu, yards: &Yards, ask: &Ask, yard: usize, texel: f64, what: &str) {
-    // A kernel reaches 2.83 texels to its corner; the floor is slanted by at most the light's own slope.
+    // A kernel reaches 2.83 texels to its corner; the floor is slanted by at most the light's own
+    // slope.
     let settled = yards.settled(yard, |_| -SUN.normalize(), 4.5 * texel);
     let seen = ask.points(gpu, &settled.points);
     settled.assert_agrees(&seen, &format!("{what}, yard {yard}"));
 }
 
-/// Two cameras that see different parts of the world share one light's maps, and while nothing moves the maps are kept.
-/// The light-space bounds over both yards are some 110 units wide.
+/// Two cameras that see different parts of the world share one light's maps, and while nothing
+/// moves the maps are kept. The light-space bounds over both yards are some 110 units wide.
 #[test]
 fn two_cameras_share_the_maps_of_a_sun() {
     let gpu = gpu();
@@ -173,15 +174,16 @@ fn two_cameras_share_the_maps_of_a_sun() {
     }
 }
 
-/// An additional camera costs no texels of a light whose fit it does not widen, and a mirrored one counts like any
-/// other.
+/// An additional camera costs no texels of a light whose fit it does not widen, and a mirrored one
+/// counts like any other.
 #[test]
 fn a_mirror_sees_what_its_camera_sees() {
     let gpu = gpu();
     let yards = Yards::new(gpu);
     let list = yards.list();
     let camera = yards.camera(0).view().with_max_distance(25.0);
-    // The camera is upside down: the handedness of the image is reversed, and what is seen is the same.
+    // The camera is upside down: the handedness of the image is reversed, and what is seen is the
+    // same.
     let flip = DMat4::from_scale(DVec3::new(1.0, -1.0, 1.0)).as_mat4();
     let mirrored = CameraView {
         clip_from_view: flip * camera.clip_from_view,
@@ -283,8 +285,8 @@ fn two_cameras_share_the_maps_of_local_lights() {
     ];
     for yard in 0..2 {
         for (ask, texel) in asks.iter().zip(texels) {
-            // A kernel reaches 2.83 texels to its corner, stretched by the low angle at which the light meets the
-            // floor.
+            // A kernel reaches 2.83 texels to its corner, stretched by the low angle at which the
+            // light meets the floor.
             let settled = yards.settled(yard, |at| place - at, 2.83 * texel / 0.3);
             let seen = ask.points(gpu, &settled.points);
             settled.assert_agrees(&seen, &format!("yard {yard}"));
@@ -292,8 +294,8 @@ fn two_cameras_share_the_maps_of_local_lights() {
     }
 }
 
-/// The coverage of a frame means the same for all lights: without a limit everything counts, and with a box what lies
-/// in it.
+/// The coverage of a frame means the same for all lights: without a limit everything counts, and
+/// with a box what lies in it.
 #[test]
 fn coverage_is_one_for_all_lights() {
     let gpu = gpu();

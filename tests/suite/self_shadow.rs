@@ -1,8 +1,8 @@
-//! Tests that a flat surface does not shadow itself: at no angle to the light, under no filter, at no resolution, in no
-//! depth range.
+//! Tests that a flat surface does not shadow itself: at no angle to the light, under no filter, at
+//! no resolution, in no depth range.
 //!
-//! No tolerance is needed: the bias is derived so that it allows for every rounding on the way, so the number of
-//! receivers darker than 1 - 1/255 must be zero.
+//! No tolerance is needed: the bias is derived so that it allows for every rounding on the way, so
+//! the number of receivers darker than 1 - 1/255 must be zero.
 
 use glam::{DVec3, Vec3};
 use shadow_support::mesh::Mesh;
@@ -28,7 +28,8 @@ const RANGES: [f64; 3] = [1e1, 1e3, 1e5];
 const POINTS: usize = 1024;
 const FLOAT: DepthFormat = DepthFormat::Float32;
 
-/// Returns all filters, with the default's sharpness and with a soft light, under the biases that guarantee this.
+/// Returns all filters, with the default's sharpness and with a soft light, under the biases that
+/// guarantee this.
 fn samplings() -> Vec<(Filter, Bias)> {
     let more = [Filter::default(), Filter::Pcss { light_size: 0.02 }];
     Filter::PLANAR
@@ -80,9 +81,9 @@ impl Slope {
         }
     }
 
-    /// Returns an upright box under a vertical light. Its light-space box is tight, so the sheet fills the map, and the
-    /// depth range is the one that is given: the covered box ends `range` below the sheet's highest point, or at its
-    /// lowest where that is deeper.
+    /// Returns an upright box under a vertical light. Its light-space box is tight, so the sheet
+    /// fills the map, and the depth range is the one that is given: the covered box ends `range`
+    /// below the sheet's highest point, or at its lowest where that is deeper.
     fn upright(gpu: &Gpu, tilt: f64, azimuth: f64, range: f64) -> Self {
         let slope = tilt.to_radians().tan();
         let along = DVec3::new(azimuth.to_radians().cos(), 0.0, azimuth.to_radians().sin()) * slope;
@@ -101,7 +102,8 @@ impl Slope {
         Self::new(gpu, (tilt, name), sheet, DVec3::NEG_Y, bounds)
     }
 
-    /// Returns a sheet in any orientation under a light in any direction, about `distance` away from the render origin.
+    /// Returns a sheet in any orientation under a light in any direction, about `distance` away
+    /// from the render origin.
     fn oblique(gpu: &Gpu, tilt: f64, distance: f64, random: &mut Random) -> Self {
         let normal = random.direction();
         let u = normal.any_orthonormal_vector();
@@ -140,8 +142,8 @@ impl Slope {
         )
     }
 
-    /// Asserts that the map contains about as many texels of the sheet as the sheet should cover, except for those
-    /// along its border.
+    /// Asserts that the map contains about as many texels of the sheet as the sheet should cover,
+    /// except for those along its border.
     fn assert_drawn(&self, gpu: &Gpu, shadow: &DirectionalShadow, report: &ShadowReport) {
         let texel = report.views[0].texel_size_world.as_dvec2();
         let light = self.light.as_dvec3();
@@ -251,7 +253,8 @@ fn lit(asked: usize) -> String {
     format!("0 of {asked} receivers")
 }
 
-/// Maps are as small as a single texel, smaller than their filters' kernels: the scene is drawn into them all the same.
+/// Maps are as small as a single texel, smaller than their filters' kernels: the scene is drawn
+/// into them all the same.
 #[test]
 fn slopes_in_tiny_maps_are_lit() {
     let slopes: Vec<_> = upright_slopes(gpu()).into_iter().step_by(7).collect();
@@ -283,7 +286,8 @@ fn slopes_in_large_maps_are_lit() {
     );
 }
 
-/// The step of 16 bits, 1.5 units at a range of 1e5, is part of the derived bias: no angle and no range causes acne.
+/// The step of 16 bits, 1.5 units at a range of 1e5, is part of the derived bias: no angle and no
+/// range causes acne.
 #[test]
 fn slopes_in_16_bit_maps_are_lit() {
     let slopes = upright_slopes(gpu());
@@ -313,15 +317,17 @@ fn oblique_slopes_are_lit() {
     );
 }
 
-/// Far from the render origin, where positions, the sheet's corners among them, are rounded to a fraction of a texel
-/// and more, a sheet still does not shadow itself. (An f32 has steps of 1/128 at a hundred thousand units.)
+/// Far from the render origin, where positions, the sheet's corners among them, are rounded to a
+/// fraction of a texel and more, a sheet still does not shadow itself. (An f32 has steps of 1/128
+/// at a hundred thousand units.)
 #[test]
 fn slopes_far_from_the_render_origin_are_lit() {
     let gpu = gpu();
     let mut random = Random::new(19);
     let mut slopes = Vec::new();
     for distance in [1e2, 1e3, 1e4, 1e5] {
-        // Nearer to edge-on, the rounding of the corners alone turns a sheet's other side to the light.
+        // Nearer to edge-on, the rounding of the corners alone turns a sheet's other side to the
+        // light.
         for tilt in [0.0, 30.0, 60.0, 75.0, 85.0] {
             slopes.extend((0..3).map(|_| Slope::oblique(gpu, tilt, distance, &mut random)));
         }
@@ -335,8 +341,8 @@ fn slopes_far_from_the_render_origin_are_lit() {
     );
 }
 
-/// The sheets are really in the maps of the tests above, with all of their area; and without a bias they shadow
-/// themselves, so these tests would notice it.
+/// The sheets are really in the maps of the tests above, with all of their area; and without a bias
+/// they shadow themselves, so these tests would notice it.
 #[test]
 fn the_slopes_are_in_the_map_and_would_shadow_themselves() {
     let gpu = gpu();
@@ -353,8 +359,8 @@ fn the_slopes_are_in_the_map_and_would_shadow_themselves() {
         assert_eq!((report.passes, report.draws()), (1, 1), "{}", slope.name);
         slope.assert_drawn(gpu, &sun.shadow, &report);
         let (dark, _) = sun.false_shadows(gpu, slope);
-        // Half of a kernel lies behind a plane that leans, in depth as well where it leans enough; a sheet that is
-        // nearly edge-on falls between the texels' centres.
+        // Half of a kernel lies behind a plane that leans, in depth as well where it leans enough;
+        // a sheet that is nearly edge-on falls between the texels' centres.
         let (upright, level) = (slope.light == Vec3::NEG_Y, slope.tilt < 2.0);
         let least = match slope.tilt {
             _ if upright => POINTS / 2,

@@ -1,4 +1,5 @@
-//! Validates every WGSL text of the library with naga, and tests the table that states what each requires.
+//! Validates every WGSL text of the library with naga, and tests the table that states what each
+//! requires.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -55,8 +56,9 @@ fn every_module_validates_with_what_it_requires() {
     report(&failures);
 }
 
-/// Without any one of the modules that it requires, directly or not, a module does not compile; and the modules whose
-/// names it uses are required directly. So the table contains nothing too much and nothing too little.
+/// Without any one of the modules that it requires, directly or not, a module does not compile; and
+/// the modules whose names it uses are required directly. So the table contains nothing too much
+/// and nothing too little.
 #[test]
 fn every_requirement_is_needed_and_direct() {
     let mut failures = Vec::new();
@@ -78,8 +80,8 @@ fn every_requirement_is_needed_and_direct() {
             .into_iter()
             .filter(|name| !own.contains(name))
             .collect();
-        // What a module uses of one that can be replaced, it also uses of the replacement, and it requires only the
-        // former.
+        // What a module uses of one that can be replaced, it also uses of the replacement, and it
+        // requires only the former.
         let used: BTreeSet<&str> = MODULES
             .iter()
             .filter(|other| other.name != module.name && other.replaces.is_none())
@@ -127,9 +129,9 @@ fn the_table_is_the_directory() {
     assert_eq!(in_table, on_disk);
 }
 
-/// With the declarations of their holes, the templates of a light's functions are valid WGSL as they stand: each that
-/// finds a place with each that looks the visibility up. All names that they declare begin with the library's prefix,
-/// so that no light declares a name of an engine's.
+/// With the declarations of their holes, the templates of a light's functions are valid WGSL as
+/// they stand: each that finds a place with each that looks the visibility up. All names that they
+/// declare begin with the library's prefix, so that no light declares a name of an engine's.
 #[test]
 fn templates_validate_as_they_stand() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("wgsl/template");
@@ -173,8 +175,8 @@ fn templates_validate_as_they_stand() {
     report(&failures);
 }
 
-/// These properties allow the texts to be concatenated with an engine's, and to be loaded unchanged as WESL or naga_oil
-/// modules.
+/// These properties allow the texts to be concatenated with an engine's, and to be loaded unchanged
+/// as WESL or naga_oil modules.
 #[test]
 fn texts_are_plain_and_names_are_the_librarys_own() {
     let mut failures = Vec::new();
@@ -226,8 +228,9 @@ fn texts_are_plain_and_names_are_the_librarys_own() {
     report(&failures);
 }
 
-/// All modules can be put together in one text, except those that replace another and passes that are drawn instead of
-/// each other: no two modules declare the same name, unless it is that of an entry point in both.
+/// All modules can be put together in one text, except those that replace another and passes that
+/// are drawn instead of each other: no two modules declare the same name, unless it is that of an
+/// entry point in both.
 #[test]
 fn names_do_not_collide() {
     let entry_points = |module: &ShaderModule| -> BTreeSet<String> {
@@ -245,7 +248,8 @@ fn names_do_not_collide() {
         for other in &MODULES[index + 1..] {
             let replaces =
                 |one: &ShaderModule, another: &ShaderModule| one.replaces == Some(another.name);
-            if replaces(module, other) || replaces(other, module) {
+            let both_replace = module.replaces.is_some() && module.replaces == other.replaces;
+            if replaces(module, other) || replaces(other, module) || both_replace {
                 continue;
             }
             for name in names.intersection(&wgsl::top_level_names(other.source)) {

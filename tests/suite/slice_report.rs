@@ -1,4 +1,5 @@
-//! Tests what the report says about a cascade's slice: how much of the map falls on it, and how finely.
+//! Tests what the report says about a cascade's slice: how much of the map falls on it, and how
+//! finely.
 
 use glam::{DVec3, Vec3};
 use shadow_support::camera::{Camera, Lens};
@@ -31,9 +32,9 @@ fn report(
     record(gpu(), &mut shadow, &frame)
 }
 
-/// For an orthographic image of 6 by 4 from straight above, with the light along the view, the slice's footprint is the
-/// image, and a texel is as large on it as on the map. f32 rounds the report (2^-24 of it), and the camera's matrix by
-/// its 2^-24 of the distance of 30.
+/// For an orthographic image of 6 by 4 from straight above, with the light along the view, the
+/// slice's footprint is the image, and a texel is as large on it as on the map. f32 rounds the
+/// report (2^-24 of it), and the camera's matrix by its 2^-24 of the distance of 30.
 #[test]
 fn a_picture_from_the_light_is_its_own_footprint() {
     let scene = Scene::new(
@@ -83,12 +84,13 @@ fn a_picture_from_the_light_is_its_own_footprint() {
         "{across} {texels}"
     );
     assert_eq!(slice.texels_per_pixel(512), across / 512.0);
-    // The slab's top, two above the floor, is the nearest surface that is seen, and the floor is the farthest.
+    // The slab's top, two above the floor, is the nearest surface that is seen, and the floor is
+    // the farthest.
     assert!((slice.depth_near - 28.0).abs() < 1e-4 && (slice.depth_far - 30.0).abs() < 1e-4);
 }
 
-/// Through a town, at least half of the texels of the fitted maps fall on their slices, on average over positions and
-/// cascades, and a sphere around each slice leaves less than half of that.
+/// Through a town, at least half of the texels of the fitted maps fall on their slices, on average
+/// over positions and cascades, and a sphere around each slice leaves less than half of that.
 #[test]
 fn fitted_maps_waste_less_than_half() {
     let mut random = Random::new(41);

@@ -1,5 +1,5 @@
-//! Tests spot lights: cones from a thread to nearly a half space have no acne, are dark up to the rim and lit beyond
-//! it, and their shadows are where a ray caster has them.
+//! Tests spot lights: cones from a thread to nearly a half space have no acne, are dark up to the
+//! rim and lit beyond it, and their shadows are where a ray caster has them.
 
 use std::f64::consts::{PI, TAU};
 
@@ -68,8 +68,8 @@ fn light(position_world: DVec3, direction: DVec3, cone_degrees: f64, range: f32)
     }
 }
 
-/// Returns a direction at the fraction `share` of the way from the axis to the rim, rotated around the axis; the rim is
-/// the light's own, in f32.
+/// Returns a direction at the fraction `share` of the way from the axis to the rim, rotated around
+/// the axis; the rim is the light's own, in f32.
 fn in_cone(light: &SpotLight, share: f64, turn: f64) -> DVec3 {
     let axis = light.direction.as_dvec3().normalize();
     let side = axis.any_orthonormal_vector();
@@ -78,7 +78,8 @@ fn in_cone(light: &SpotLight, share: f64, turn: f64) -> DVec3 {
     axis * angle.cos() + aside * angle.sin()
 }
 
-/// Returns a leaning plane under the light, and receivers on it all over the cone, out to nearly the end of the range.
+/// Returns a leaning plane under the light, and receivers on it all over the cone, out to nearly
+/// the end of the range.
 fn plane_under(light: &SpotLight, tilt: f64, random: &mut Random) -> (Mesh, Vec<Point>) {
     let axis = light.direction.as_dvec3().normalize();
     let side = axis.any_orthonormal_vector();
@@ -196,8 +197,8 @@ fn planes_would_shadow_themselves() {
     };
     let mut spot = Spot::new(gpu, 300, Filter::Bilinear { sharpness: 1.0 }, none);
     let mut random = Random::new(61);
-    // OpenGL clips depths to -1..1. What is allowed for the clipping of a plane 100 wide is more than a texel of the narrowest
-    // cones comes to.
+    // OpenGL clips depths to -1..1. What is allowed for the clipping of a plane 100 wide is more
+    // than a texel of the narrowest cones comes to.
     let is_gl = gpu.adapter.backend == wgpu::Backend::Gl;
     let cones = CONES_DEGREES.into_iter();
     for cone in cones.filter(|cone| *cone >= 10.0 || !is_gl) {
@@ -214,13 +215,15 @@ fn planes_would_shadow_themselves() {
     }
 }
 
-/// Under a plate that covers the whole cone everything is dark up to the rim, and lit from the rim on.
+/// Under a plate that covers the whole cone everything is dark up to the rim, and lit from the rim
+/// on.
 #[test]
 fn the_cone_ends_at_its_rim() {
     let gpu = gpu();
     for filter in [Filter::default(), Filter::Tent7 { sharpness: 1.0 }] {
         let mut spot = Spot::new(gpu, 128, filter, Bias::Auto);
-        // The rim of 179.9 degrees lies within 1/1024 of the reach of the light's own plane, where nothing casts.
+        // The rim of 179.9 degrees lies within 1/1024 of the reach of the light's own plane, where
+        // nothing casts.
         for cone in CONES_DEGREES.into_iter().filter(|cone| *cone < 179.5) {
             let direction = DVec3::new(0.3, -1.0, 0.2);
             let light = light(DVec3::new(0.5, 2.0, -0.25), direction, cone, 30.0);
@@ -236,7 +239,8 @@ fn the_cone_ends_at_its_rim() {
                 (v * 4.0).as_vec3(),
             );
             spot.record(gpu, &Scene::new(gpu, &[dome, plate]), light);
-            // The rim is found by a cosine that is rounded a few times: 8u of cosine are 8u / sin of angle.
+            // The rim is found by a cosine that is rounded a few times: 8u of cosine are 8u / sin
+            // of angle.
             let angle = f64::from(light.outer_angle_radians);
             let slack = 1e-5 + 8.0 * U / angle.sin() / angle;
             let at = |share: f64| -> Vec<Point> {

@@ -1,4 +1,5 @@
-//! Tests extents that no motion of the camera changes, splits at given depths, and what a walk through a town changes.
+//! Tests extents that no motion of the camera changes, splits at given depths, and what a walk
+//! through a town changes.
 
 use glam::DVec3;
 use shadow_support::camera::Camera;
@@ -58,10 +59,10 @@ fn frame<'a>(
     }
 }
 
-/// Over 200 frames of the walk, a point of the floor that the same cascade covers with the same texel size before and
-/// after keeps its visibility, to the rounding of texel coordinates (`28uN` in each frame, times the sharpness of three
-/// and two axes), except for ties of comparisons, one in five hundred. Texel sizes change for at most a twentieth of
-/// the cascades per frame.
+/// Over 200 frames of the walk, a point of the floor that the same cascade covers with the same
+/// texel size before and after keeps its visibility, to the rounding of texel coordinates (`28uN`
+/// in each frame, times the sharpness of three and two axes), except for ties of comparisons, one
+/// in five hundred. Texel sizes change for at most a twentieth of the cascades per frame.
 #[test]
 fn a_walk_changes_shadows_only_with_a_rung() {
     const FRAMES: u32 = 200;
@@ -127,8 +128,8 @@ fn a_walk_changes_shadows_only_with_a_rung() {
     );
 }
 
-/// Whatever the camera does, the texels of a sphere's cascades are those of the first frame, to the bit, and what the
-/// camera sees in the slice is covered.
+/// Whatever the camera does, the texels of a sphere's cascades are those of the first frame, to the
+/// bit, and what the camera sees in the slice is covered.
 #[test]
 fn no_motion_changes_a_spheres_texels() {
     let scene = town();
@@ -197,7 +198,8 @@ fn a_sphere_around_an_endless_view_is_refused() {
     );
 }
 
-/// Each position is covered by the cascade of its depth or a finer one, unless no shadow reaches it.
+/// Each position is covered by the cascade of its depth or a finer one, unless no shadow reaches
+/// it.
 #[test]
 fn explicit_splits_end_where_they_say() {
     let scene = town();

@@ -1,5 +1,6 @@
-//! Tests that where shaders cannot gather, and the library samples instead, every filter gives the same visibilities,
-//! to the bit, as by the gathers that `filter_parity` compares with the CPU reference.
+//! Tests that where shaders cannot gather, and the library samples instead, every filter gives the
+//! same visibilities, to the bit, as by the gathers that `filter_parity` compares with the CPU
+//! reference.
 
 use shadow_support::bind;
 use shadow_support::probe::{Point, PointShader};
@@ -11,8 +12,8 @@ use crate::fixtures::probe::SunProbe;
 use crate::fixtures::wgsl;
 use crate::suite::filter_parity::{BIASES, Lit, filters, points, scene};
 
-/// Runs the WGSL that `ShadowBindings` emits for the light where there is no gather, with the layout and group that it
-/// needs.
+/// Runs the WGSL that `ShadowBindings` emits for the light where there is no gather, with the
+/// layout and group that it needs.
 fn by_samples(gpu: &Gpu, lit: &Lit, points: &[Point]) -> Vec<f32> {
     let descriptor = ShadowBindingsDescriptor {
         lights: &[("sun", lit.shadow.maps())],
@@ -24,12 +25,15 @@ fn by_samples(gpu: &Gpu, lit: &Lit, points: &[Point]) -> Vec<f32> {
         modules.next().expect("a module of the table").source
     };
     let map = "var shadow_map_sun: texture_depth_2d_array;";
-    for part in [source("texels"), map] {
-        assert!(bindings.wgsl().contains(part), "{part}");
-    }
+    let gathers = ["texels", "texels_by_offsets"].map(source);
+    let gathers = gathers
+        .into_iter()
+        .find(|text| bindings.wgsl().contains(text));
+    let gathers = gathers.expect("a module that gathers");
+    assert!(bindings.wgsl().contains(map), "{map}");
     let text = bindings
         .wgsl()
-        .replace(source("texels"), source("texels_by_samples"))
+        .replace(gathers, source("texels_by_samples"))
         .replace(map, "var shadow_map_sun: texture_2d_array<f32>;");
     let types = [
         wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering),
@@ -59,8 +63,8 @@ fn samples_give_what_gathers_give() {
     let mut failures = Vec::new();
     for filter in filters().filter(|filter| filter.compares_each_texel()) {
         for bias in BIASES {
-            // The size is not a power of two, so that coordinates are rounded on their way to the sampler, and it is
-            // much larger than the kernel.
+            // The size is not a power of two, so that coordinates are rounded on their way to the
+            // sampler, and it is much larger than the kernel.
             let map_size = (93.0 + 9.0 * filter.reach_texels()) as u32;
             let lit = Lit::new(gpu, &scene, map_size, filter, bias);
             let points = points(&scene, u64::from(map_size));
@@ -80,8 +84,8 @@ fn samples_give_what_gathers_give() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
-/// With the module named, no filter that compares each texel gathers any more, and without it nothing samples a map as
-/// floats.
+/// With the module named, no filter that compares each texel gathers any more, and without it
+/// nothing samples a map as floats.
 #[test]
 fn the_module_takes_the_place_of_gathers() {
     let filters: Vec<_> = MODULES

@@ -1,5 +1,6 @@
-//! Tests a device whose shaders cannot gather, like those of WebGL 2: OpenGL ES 3.0, which Mesa provides to a process
-//! whose environment requests it. There the library draws what it draws elsewhere.
+//! Tests a device whose shaders cannot gather, like those of WebGL 2: OpenGL ES 3.0, which Mesa
+//! provides to a process whose environment requests it. There the library draws what it draws
+//! elsewhere.
 
 use image::RgbaImage;
 use shadow_support::readback;
@@ -12,15 +13,16 @@ use crate::fixtures::lights::{Kind, Light, camera, stage};
 use crate::fixtures::picture::{COLOR, color_pass, color_target, fragment_pipeline};
 use crate::fixtures::tint::tint;
 
-/// Disables desktop OpenGL and limits OpenGL ES to 3.0. The images that are compared with come from Vulkan, whatever
-/// the backend of the run.
+/// Disables desktop OpenGL and limits OpenGL ES to 3.0. The images that are compared with come from
+/// Vulkan, whatever the backend of the run.
 const ES_3_0: [(&str, &str); 3] = [
     ("SHADOW_TEST_BACKEND", "vulkan"),
     ("MESA_GL_VERSION_OVERRIDE", "3.0"),
     ("MESA_GLES_VERSION_OVERRIDE", "3.0"),
 ];
 
-/// Returns the device, or `None` where the machine has no OpenGL, or not Mesa's, which reads these variables.
+/// Returns the device, or `None` where the machine has no OpenGL, or not Mesa's, which reads these
+/// variables.
 fn es_3_0() -> Option<Gpu> {
     if !has_adapter(wgpu::Backends::GL) {
         return None;
@@ -39,8 +41,8 @@ fn es_3_0() -> Option<Gpu> {
     is_mesa.then_some(gpu)
 }
 
-/// Asserts that everything was drawn, or nothing where there is no such device; the latter is not permitted in a run on
-/// Mesa's OpenGL.
+/// Asserts that everything was drawn, or nothing where there is no such device; the latter is not
+/// permitted in a run on Mesa's OpenGL.
 fn assert_drawn(drawn: usize, all: usize) {
     let adapter = &gpu().adapter;
     let has_mesa = adapter.backend == wgpu::Backend::Gl && adapter.driver_info.contains("Mesa");
@@ -170,7 +172,8 @@ fn tinted(gpu: &Gpu, light: &dyn Light) -> RgbaImage {
     tint(gpu, light.maps(), &camera(), SIZE, 0.1 / 5.5)
 }
 
-/// Asserts that the pixels are the same, up to a step of 8 bits, and that there is more than one grey or colour.
+/// Asserts that the pixels are the same, up to a step of 8 bits, and that there is more than one
+/// grey or colour.
 fn assert_same([wanted, seen]: &[RgbaImage; 2], name: &str) {
     let pixels = || wanted.pixels().zip(seen.pixels());
     let differ = pixels()

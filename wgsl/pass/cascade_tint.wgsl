@@ -1,11 +1,13 @@
-// Draws colours that tell which view covers each pixel. The pass multiplies the engine's image by them.
+// Draws colours that tell which view covers each pixel. The pass multiplies the engine's image by
+// them.
 //
 // CPU counterpart: src/debug/cascade_tint.rs. Requires: view, place, fullscreen.
 
 struct ShadowTint {
     // Transforms the clip space of the image's camera to render space.
     render_from_clip: mat4x4<f32>,
-    // Holds the number of views in x. It is a vector, since uniforms are multiples of 16 bytes in OpenGL ES 3.0.
+    // Holds the number of views in x. It is a vector, since uniforms are multiples of 16 bytes in
+    // OpenGL ES 3.0.
     count: vec4<u32>,
 }
 
@@ -14,8 +16,8 @@ struct ShadowTint {
 @group(0) @binding(2) var shadow_tint_depth: texture_2d<f32>;
 @group(0) @binding(3) var shadow_tint_sampler: sampler;
 
-// Returns the colour of a view: red, green, blue, yellow, cyan, magenta, orange or violet, and grey where no view
-// covers the position.
+// Returns the colour of a view: red, green, blue, yellow, cyan, magenta, orange or violet, and grey
+// where no view covers the position.
 fn shadow_tint_color(view: u32) -> vec3<f32> {
     switch view {
         case 0u: { return vec3<f32>(1.0, 0.35, 0.3); }
@@ -32,13 +34,15 @@ fn shadow_tint_color(view: u32) -> vec3<f32> {
 
 @fragment
 fn shadow_tint_fragment(vertex: ShadowFullscreenVertex) -> @location(0) vec4<f32> {
-    // This is a sample, since GLSL ES 3.00 has no gather, and since loads fail as `texels_by_samples` describes.
+    // This is a sample, since GLSL ES 3.00 has no gather, and since loads fail as
+    // `texels_by_samples` describes.
     let size = vec2<f32>(textureDimensions(shadow_tint_depth));
     let texel = min(floor(vertex.uv * size), size - 1.0);
     let depth = textureSampleLevel(shadow_tint_depth, shadow_tint_sampler, (texel + 0.5) / size, 0.0).x;
     let ndc = vec2<f32>(vertex.uv.x * 2.0 - 1.0, 1.0 - vertex.uv.y * 2.0);
     let homogeneous = shadow_tint.render_from_clip * vec4<f32>(ndc, depth, 1.0);
-    // A depth at either end of the range, whichever convention the camera has, means that nothing was drawn: the sky.
+    // A depth at either end of the range, whichever convention the camera has, means that nothing
+    // was drawn: the sky.
     if depth == 0.0 || depth == 1.0 || homogeneous.w == 0.0 {
         return vec4<f32>(1.0);
     }

@@ -1,4 +1,5 @@
-// Contains the built-in vertex stages of casters for six faces in one multiview pass. Requires: caster_multiview.
+// Contains the built-in vertex stages of casters for six faces in one multiview pass. Requires:
+// caster_multiview.
 
 // Draws positions that are in render space already.
 @vertex

@@ -5,7 +5,8 @@ struct ShadowFullscreenVertex {
     @location(0) uv: vec2<f32>,
 }
 
-// Returns the corners of one triangle that covers the whole viewport; uv has its origin at the top left.
+// Returns the corners of one triangle that covers the whole viewport; uv has its origin at the top
+// left.
 @vertex
 fn shadow_fullscreen_vertex(@builtin(vertex_index) index: u32) -> ShadowFullscreenVertex {
     let corner = vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 2.0;

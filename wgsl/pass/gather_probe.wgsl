@@ -1,5 +1,5 @@
-// Gathers from a map, in a pass that is never drawn: whether a device can create its pipeline tells whether its shaders
-// can gather.
+// Gathers from a map, in a pass that is never drawn: whether a device can create its pipeline tells
+// whether its shaders can gather.
 //
 // CPU counterpart: src/receive/texel_access.rs. Requires: fullscreen.
 

@@ -1,5 +1,6 @@
 
-// Returns where a position of render space falls on the face of the cube on which it lies as seen from the light.
+// Returns where a position of render space falls on the face of the cube on which it lies as seen
+// from the light.
 fn shadow_place_of_NAME(INDEX: u32, position: vec3<f32>) -> ShadowPlace {
     let from_light = position - shadow_views_NAME[ANY_VIEW].anchor;
     let face = shadow_face(from_light);

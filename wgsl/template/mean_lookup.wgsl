@@ -1,13 +1,14 @@
 
-// Returns the visibility of the light, in [0, 1], from a position in render space. It is 1 beyond the light's range.
+// Returns the visibility of the light, in [0, 1], from a position in render space. It is 1 beyond
+// the light's range.
 //
-// It is the mean of samples in directions around that of the position. Each sample is looked up on the face of the cube
-// that its direction meets.
+// It is the mean of samples in directions around that of the position. Each sample is looked up on
+// the face of the cube that its direction meets.
 fn shadow_NAME(INDEX: u32, position: vec3<f32>, normal: vec3<f32>) -> f32 {
     let anchor = shadow_views_NAME[ANY_VIEW].anchor;
     let from_light = position - anchor;
-    // The distance, which varies, is the left side of the comparison and the uniform the right side, because of the
-    // driver defect that `place` describes.
+    // The distance, which varies, is the left side of the comparison and the uniform the right
+    // side, because of the driver defect that `place` describes.
     if length(from_light) >= shadow_views_NAME[ANY_VIEW].range {
         return 1.0;
     }

@@ -7,7 +7,8 @@ use wgpu_shadows::{ShadowMaps, debug::DebugImage, debug::DebugView};
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// Draws `what` of `source` after the commands of `encoder`, submits, and reads the image back: four bytes per pixel.
+/// Draws `what` of `source` after the commands of `encoder`, submits, and reads the image back:
+/// four bytes per pixel.
 pub fn draw(
     gpu: &Gpu,
     mut encoder: wgpu::CommandEncoder,

@@ -1,4 +1,5 @@
-//! Holds meshes as the engine keeps them: a vertex buffer, and instances with a matrix and a colour each.
+//! Holds meshes as the engine keeps them: a vertex buffer, and instances with a matrix and a colour
+//! each.
 
 use std::f32::consts::{PI, TAU};
 
@@ -92,8 +93,8 @@ pub fn cube() -> Vec<Vertex> {
         .collect()
 }
 
-/// Returns a square of half side 1 whose front faces along `out`, an axis, from `distance` in that direction: two
-/// triangles, counter-clockwise as seen from the front.
+/// Returns a square of half side 1 whose front faces along `out`, an axis, from `distance` in that
+/// direction: two triangles, counter-clockwise as seen from the front.
 pub fn square(out: Vec3, distance: f32) -> [Vertex; 6] {
     let right = Vec3::new(out.y, out.z, out.x);
     let up = out.cross(right);
@@ -122,7 +123,8 @@ pub fn inside_out(mesh: &[Vertex]) -> Vec<Vertex> {
         .collect()
 }
 
-/// Returns the sphere of radius 1 in `rings` from pole to pole, each of twice as many quadrilaterals.
+/// Returns the sphere of radius 1 in `rings` from pole to pole, each of twice as many
+/// quadrilaterals.
 pub fn sphere(rings: u32) -> Vec<Vertex> {
     let corner = |(ring, step): (u32, u32)| {
         let (sine, cosine) = (PI * ring as f32 / rings as f32).sin_cos();

@@ -93,7 +93,8 @@ impl Phong {
         Self::with_lights(gpu, descriptor, None)
     }
 
-    /// Makes the pass with a bind group of lights for the fragment stage, behind that of the shadows.
+    /// Makes the pass with a bind group of lights for the fragment stage, behind that of the
+    /// shadows.
     pub fn with_lights(
         gpu: &Gpu,
         descriptor: &PhongDescriptor<'_>,

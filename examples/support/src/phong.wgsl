@@ -1,5 +1,5 @@
-// Computes Blinn-Phong with one light. An example puts its fragment stage behind this text, and the visibility
-// functions that it calls in front.
+// Computes Blinn-Phong with one light. An example puts its fragment stage behind this text, and the
+// visibility functions that it calls in front.
 
 struct Frame {
     clip_from_render: mat4x4<f32>,
@@ -34,8 +34,9 @@ fn vertex(
 ) -> Surface {
     let render_from_model = mat4x4<f32>(column_x, column_y, column_z, column_w);
     let place = render_from_model * vec4<f32>(position, 1.0);
-    // Matrices here are rotations after scales, for which the inverse transpose is the matrix divided by its squared
-    // scales. A common factor has no effect: with it removed, the scales are ones where all are equal.
+    // Matrices here are rotations after scales, for which the inverse transpose is the matrix
+    // divided by its squared scales. A common factor has no effect: with it removed, the scales are
+    // ones where all are equal.
     let squared = vec3<f32>(
         dot(column_x, column_x),
         dot(column_y, column_y),

@@ -21,7 +21,8 @@ pub fn save_image(path: &Path, picture: &image::DynamicImage) -> Result<(), Stri
         .map_err(|error| format!("cannot write {}: {error}", path.display()))
 }
 
-/// Returns an image of half the width and half the height: the mean of each four sRGB pixels, taken in linear light.
+/// Returns an image of half the width and half the height: the mean of each four sRGB pixels, taken
+/// in linear light.
 pub fn halved(pixels: &[u8], [width, height]: [u32; 2]) -> Vec<u8> {
     let linear: Vec<f32> = (0..=u8::MAX).map(linear_from_srgb).collect();
     let (width, height) = (width as usize, height as usize);

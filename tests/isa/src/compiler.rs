@@ -3,8 +3,9 @@
 use std::ffi::{CStr, CString};
 
 use ash::{khr, vk};
+use shadow_backends::spirv;
 
-use crate::{IsaError, spirv};
+use crate::IsaError;
 
 /// Holds what the compiler says of a stage of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,7 +110,7 @@ impl Compiler {
         vertex: &str,
         fragment: Option<&str>,
     ) -> Result<Figures, IsaError> {
-        let (module, words) = spirv::write(wgsl)?;
+        let (module, words) = spirv::write(wgsl, spirv::Target::Robust13)?;
         // SAFETY: as in `new`.
         unsafe {
             let mut sets = Vec::new();

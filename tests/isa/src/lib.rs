@@ -10,10 +10,11 @@
 
 mod compiler;
 mod driver;
-mod spirv;
+mod table;
 
 pub use compiler::{Compiler, Figures};
 pub use driver::Driver;
+pub use table::{Row, Table};
 
 /// States why a shader could not be compiled.
 #[derive(Debug, thiserror::Error)]
@@ -36,9 +37,9 @@ pub enum IsaError {
     /// The driver offers no device, because it does not know the chip.
     #[error("no device: RADV_FORCE_FAMILY names a chip that the driver does not know")]
     NoDevice,
-    /// The WGSL is not valid.
-    #[error("{0}")]
-    Wgsl(String),
+    /// The WGSL is not valid, or cannot be written as SPIR-V.
+    #[error(transparent)]
+    Writing(#[from] shadow_backends::WriteError),
     /// The WGSL has no such entry point.
     #[error("no entry point {0:?}")]
     Entry(String),

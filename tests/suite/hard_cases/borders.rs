@@ -1,5 +1,5 @@
-//! Tests receivers beyond every cascade, behind the camera and far away from everything: they are lit, and no other
-//! light's layer is read.
+//! Tests receivers beyond every cascade, behind the camera and far away from everything: they are
+//! lit, and no other light's layer is read.
 
 use glam::{DVec3, Vec3};
 use shadow_support::camera::Camera;
@@ -19,8 +19,8 @@ use crate::fixtures::ask::{Ask, submitted};
 use crate::fixtures::frames::{Coverage, PoolFrame, RecordFrame};
 use crate::fixtures::gpu::gpu;
 
-/// Under an unbounded roof everything that a cascade covers is dark, and everything else is lit, on both sides of every
-/// border; the view function returns no layer that does not exist.
+/// Under an unbounded roof everything that a cascade covers is dark, and everything else is lit, on
+/// both sides of every border; the view function returns no layer that does not exist.
 #[test]
 fn receivers_beyond_every_cascade_are_lit() {
     let roof = scene(&[Mesh::cuboid(
@@ -131,8 +131,8 @@ fn receivers_beyond_every_cascade_are_lit() {
     );
 }
 
-/// Layers of a pool lie side by side in one texture: beside a light that is completely dark, a light whose map is empty
-/// is lit up to the border of its map, and beyond.
+/// Layers of a pool lie side by side in one texture: beside a light that is completely dark, a
+/// light whose map is empty is lit up to the border of its map, and beyond.
 #[test]
 fn no_light_of_a_pool_reads_its_neighbours() {
     let gpu = gpu();
@@ -150,8 +150,8 @@ fn no_light_of_a_pool_reads_its_neighbours() {
         .iter()
         .map(|place| Mesh::cuboid(place.as_vec3() - 1.0, place.as_vec3() + 1.0))
         .collect();
-    // Something casts in every view of the middle light as well, so that its layers are drawn: small plates on all
-    // sides.
+    // Something casts in every view of the middle light as well, so that its layers are drawn:
+    // small plates on all sides.
     let plates = [
         Vec3::X,
         Vec3::NEG_X,
@@ -216,7 +216,8 @@ fn no_light_of_a_pool_reads_its_neighbours() {
         asked += points.len();
     };
     let axis = DVec3::new(0.2, -1.0, 0.1).normalize();
-    // The kernel of a plate is 4 texels and a half, of at most 2 tan 0.9 / 64 each; a plate's own corner adds 0.01.
+    // The kernel of a plate is 4 texels and a half, of at most 2 tan 0.9 / 64 each; a plate's own
+    // corner adds 0.01.
     let clear = |direction: DVec3| direction.abs().max_element() / direction.length() < 0.9;
     for (index, place) in places.into_iter().enumerate() {
         let (spot, lamp) = slots[index];

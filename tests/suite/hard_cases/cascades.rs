@@ -15,7 +15,8 @@ use crate::fixtures::view_member::member;
 
 const LIGHT: DVec3 = DVec3::new(0.5, -1.0, 0.35);
 
-/// Returns rows of boxes to the horizon, over a floor that only receives, before a camera that looks along them.
+/// Returns rows of boxes to the horizon, over a floor that only receives, before a camera that
+/// looks along them.
 fn avenue() -> (World, Vec<Mesh>) {
     let camera = Camera::modern(
         DVec3::new(-1.0, 2.6, -9.0),
@@ -76,10 +77,10 @@ fn cascaded(cascades: u32, split: CascadeSplit, world: &World, meshes: &[Mesh]) 
     sun
 }
 
-/// With 1 to 8 cascades and every split, receivers all over the image are as dark as the ray-traced truth, wherever it
-/// is the same for three texels of their own cascade around. Along lines into the depth, where one cascade ends and the
-/// next begins, the visibilities on both sides of the border agree unless an edge lies within three of the coarser
-/// texels: there is no seam.
+/// With 1 to 8 cascades and every split, receivers all over the image are as dark as the ray-traced
+/// truth, wherever it is the same for three texels of their own cascade around. Along lines into
+/// the depth, where one cascade ends and the next begins, the visibilities on both sides of the
+/// border agree unless an edge lies within three of the coarser texels: there is no seam.
 #[test]
 fn every_cascade_shows_the_truth_and_borders_are_no_seams() {
     let (world, meshes) = avenue();

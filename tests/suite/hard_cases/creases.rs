@@ -1,4 +1,5 @@
-//! Tests where two planes meet: a ridge does not shadow itself, and a valley only within the kernel of its crease.
+//! Tests where two planes meet: a ridge does not shadow itself, and a valley only within the kernel
+//! of its crease.
 
 use glam::{DVec3, Vec3};
 use shadow_support::mesh::Mesh;
@@ -14,8 +15,8 @@ use crate::fixtures::gpu::gpu;
 
 const LENGTH: f64 = 4.0;
 
-/// Describes two planes that meet in a line along `along` and descend from it by `slopes` (negative ones ascend, as in
-/// a valley).
+/// Describes two planes that meet in a line along `along` and descend from it by `slopes` (negative
+/// ones ascend, as in a valley).
 struct Crease {
     name: String,
     along: DVec3,
@@ -49,8 +50,8 @@ impl Crease {
         }
     }
 
-    /// Returns receivers on both sides, and their distances from the crease as the light sees it. Normals face up,
-    /// where the light is.
+    /// Returns receivers on both sides, and their distances from the crease as the light sees it.
+    /// Normals face up, where the light is.
     fn receivers(&self, random: &mut Random) -> Vec<(Point, f64)> {
         (0..1200)
             .filter_map(|index| {
@@ -118,8 +119,8 @@ fn samplings() -> Vec<(Filter, Bias)> {
         .collect()
 }
 
-/// Returns the distances from the crease, in texels, of the receivers that are in shadow, for all creases, and how many
-/// were sampled.
+/// Returns the distances from the crease, in texels, of the receivers that are in shadow, for all
+/// creases, and how many were sampled.
 fn false_shadows(signs: f64, filter: Filter, bias: Bias) -> (Vec<(f64, String)>, usize) {
     let mut sun = Sun::new(&DirectionalShadowDescriptor {
         map_size: 128,
@@ -159,8 +160,8 @@ fn false_shadows(signs: f64, filter: Filter, bias: Bias) -> (Vec<(f64, String)>,
     (found, asked)
 }
 
-/// On a ridge every texel on the far side lies lower than the receiver's plane: nothing may be darker than 1/255 below
-/// lit.
+/// On a ridge every texel on the far side lies lower than the receiver's plane: nothing may be
+/// darker than 1/255 below lit.
 #[test]
 fn ridges_are_lit() {
     let mut all = 0;
@@ -189,9 +190,10 @@ fn ridges_are_lit() {
     );
 }
 
-/// In a valley the far side rises above the receiver's plane, so a kernel that reaches across the crease sees it as a
-/// caster. It reaches K texels per axis, at most √2 K from the crease; a receiver that is moved along its normal gets
-/// at most `√2 K` further. Half a texel is for the area that a texel's centre represents.
+/// In a valley the far side rises above the receiver's plane, so a kernel that reaches across the
+/// crease sees it as a caster. It reaches K texels per axis, at most √2 K from the crease; a
+/// receiver that is moved along its normal gets at most `√2 K` further. Half a texel is for the
+/// area that a texel's centre represents.
 #[test]
 fn false_shadow_in_valleys_stays_at_the_crease() {
     let (mut all, mut farthest_share) = (0, 0.0_f64);

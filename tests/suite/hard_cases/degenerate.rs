@@ -31,7 +31,8 @@ fn below() -> [Point; 2] {
     ]
 }
 
-/// Returns the visibilities of the position below the plate and of one beside it, or the frame's error.
+/// Returns the visibilities of the position below the plate and of one beside it, or the frame's
+/// error.
 fn frame(
     sun: &mut Sun,
     light: Vec3,
@@ -55,8 +56,8 @@ fn frame(
     status.map(|status| (status, sun.ask(&below())))
 }
 
-/// Bounds of a sheet are flat and cast all the same; bounds that are a point, or empty, may cast nothing and break
-/// nothing; bounds that are not finite are refused by name.
+/// Bounds of a sheet are flat and cast all the same; bounds that are a point, or empty, may cast
+/// nothing and break nothing; bounds that are not finite are refused by name.
 #[test]
 fn bounds_without_volume_or_without_end() {
     let mut sun = Sun::of_size(128);
@@ -97,7 +98,8 @@ fn bounds_without_volume_or_without_end() {
             let as_receiver = frame(&mut sun, down, coverage, flat, &with_floor).expect("left out");
             assert_eq!(as_receiver.1, [0.0, 1.0], "{bounds:?}");
         }
-        // For the largest numbers that exist, the fit can be represented, or an error says that it cannot.
+        // For the largest numbers that exist, the fit can be represented, or an error says that it
+        // cannot.
         let huge = Aabb::new(Vec3::splat(-f32::MAX), Vec3::splat(f32::MAX));
         match frame(&mut sun, down, coverage, huge, &floor) {
             Ok((_, seen)) => assert!(seen.iter().all(|seen| (0.0..=1.0).contains(seen))),
@@ -126,8 +128,9 @@ fn bounds_without_volume_or_without_end() {
     );
 }
 
-/// Length has no meaning: a direction of the smallest or largest numbers shines as its unit vector does, to the bit
-/// where it points along an axis. Zero and non-finite directions are refused, and the last visibilities stay.
+/// Length has no meaning: a direction of the smallest or largest numbers shines as its unit vector
+/// does, to the bit where it points along an axis. Zero and non-finite directions are refused, and
+/// the last visibilities stay.
 #[test]
 fn lights_without_length_or_direction() {
     let mut sun = Sun::of_size(128);
@@ -160,8 +163,9 @@ fn lights_without_length_or_direction() {
     );
 }
 
-/// Maps range from a single texel to the largest that every device supports: the plate's shadow is there wherever there
-/// are texels for it, nothing shadows itself in any, and impossible sizes are refused by name.
+/// Maps range from a single texel to the largest that every device supports: the plate's shadow is
+/// there wherever there are texels for it, nothing shadows itself in any, and impossible sizes are
+/// refused by name.
 #[test]
 fn maps_of_every_size() {
     let gpu = gpu();

@@ -20,8 +20,8 @@ fn down_to(range: f64, bounds: Aabb) -> Coverage {
     Coverage::Bounds(covered)
 }
 
-/// A step of depth matters only where caster and receiver are as close as that: at most one receiver in a thousand has
-/// another visibility in 16 bits than in 32, in and around shadows.
+/// A step of depth matters only where caster and receiver are as close as that: at most one
+/// receiver in a thousand has another visibility in 16 bits than in 32, in and around shadows.
 #[test]
 fn both_depth_formats_give_the_same_picture() {
     let (mut differences, mut asked) = (0, 0);
@@ -70,8 +70,9 @@ fn both_depth_formats_give_the_same_picture() {
     );
 }
 
-/// A scene of a hundred times the usual size lies at the top of ever deeper pits: settled receivers are correct as long
-/// as what casts is higher than the reported gap, which is asserted of every box.
+/// A scene of a hundred times the usual size lies at the top of ever deeper pits: settled receivers
+/// are correct as long as what casts is higher than the reported gap, which is asserted of every
+/// box.
 #[test]
 fn long_depth_ranges_keep_their_shadows() {
     let unit = 100.0;

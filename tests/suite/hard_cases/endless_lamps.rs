@@ -1,5 +1,6 @@
-//! Spot and point lights without an end of their range, as glTF has them by default: what stands close to the light casts, and
-//! what a camera sees has its shadows, whatever the size of the ground.
+//! Spot and point lights without an end of their range, as glTF has them by default: what stands
+//! close to the light casts, and what a camera sees has its shadows, whatever the size of the
+//! ground.
 
 use glam::{DVec3, Vec3};
 use shadow_support::mesh::Mesh;
@@ -23,9 +24,10 @@ pub fn lift(ground: f64) -> f64 {
     8.0 * U * ground
 }
 
-/// By which share of its way to the light a receiver may be set back for the depths of a ground of such a half side. OpenGL
-/// clips depths to -1..1: the ground's err by `s`, u of the half side over the near plane, relative to themselves, and receivers
-/// allow for as much. A small caster is then told from a receiver that is farther by 1 + s.
+/// By which share of its way to the light a receiver may be set back for the depths of a ground of
+/// such a half side. OpenGL clips depths to -1..1: the ground's err by `s`, u of the half side over
+/// the near plane, relative to themselves, and receivers allow for as much. A small caster is then
+/// told from a receiver that is farther by 1 + s.
 pub fn nearer(lamp: &Lamp, ground: f64) -> f64 {
     if gpu().adapter.backend != wgpu::Backend::Gl {
         return 0.0;
@@ -39,9 +41,10 @@ pub fn nearer(lamp: &Lamp, ground: f64) -> f64 {
     error / (1.0 + error)
 }
 
-/// A lamp in a shade and a street lamp on a post: the nearest caster begins 12 and 5 cm from the light, and the ground may end
-/// at the horizon. All receivers that the camera sees are as rays have them, but for a gap of the rounding that the far corners
-/// of a ground of two triangles are drawn with.
+/// A lamp in a shade and a street lamp on a post: the nearest caster begins 12 and 5 cm from the
+/// light, and the ground may end at the horizon. All receivers that the camera sees are as rays
+/// have them, but for a gap of the rounding that the far corners of a ground of two triangles are
+/// drawn with.
 #[test]
 fn endless_lights_are_as_the_truth_says() {
     let (mut failures, mut receivers, mut dark_receivers) = (Vec::new(), 0, 0);
@@ -52,7 +55,8 @@ fn endless_lights_are_as_the_truth_says() {
                 lamp_over_table(Shade::OneMesh, ground),
                 street_lamp(ground),
             ];
-            // A box that contains the light says nothing of how near the mesh is: the share of what is seen has to do.
+            // A box that contains the light says nothing of how near the mesh is: the share of what
+            // is seen has to do.
             if ground <= 200.0 {
                 settings.push(lamp_over_table(Shade::WholeScene, ground));
             }
@@ -117,8 +121,9 @@ fn a_bulb_around_the_light_hides_all() {
     }
 }
 
-/// The rounding that a receiver allows for is that of its own distance from the light, not of the farthest thing in sight: a
-/// sheet 1 cm above a table keeps its shadow before a ground that ends at the horizon. (The ground casts onto nothing.)
+/// The rounding that a receiver allows for is that of its own distance from the light, not of the
+/// farthest thing in sight: a sheet 1 cm above a table keeps its shadow before a ground that ends
+/// at the horizon. (The ground casts onto nothing.)
 #[test]
 fn sheets_close_to_a_surface_cast_before_a_wide_ground() {
     let light = DVec3::new(0.2, 2.0, 0.1);
@@ -149,8 +154,9 @@ fn sheets_close_to_a_surface_cast_before_a_wide_ground() {
     }
 }
 
-/// A lamp on a ceiling, within rounding before or behind its surface, costs the room below little contact: the reported gap is at
-/// most twice that of a lamp 10 cm below, and what is seen is as the truth says.
+/// A lamp on a ceiling, within rounding before or behind its surface, costs the room below little
+/// contact: the reported gap is at most twice that of a lamp 10 cm below, and what is seen is as
+/// the truth says.
 #[test]
 fn a_lamp_on_a_ceiling_resolves_the_room() {
     let mut failures = Vec::new();
@@ -173,7 +179,8 @@ fn a_lamp_on_a_ceiling_resolves_the_room() {
                 let gaps = report.views.iter().map(|view| view.max_peter_panning_world);
                 let gap = gaps.fold(0.0, f32::max);
                 let gap_below = *gap_below.get_or_insert(gap);
-                // The rest of the gap is the kernel's; a near plane at the surface itself would make it endless.
+                // The rest of the gap is the kernel's; a near plane at the surface itself would
+                // make it endless.
                 if gap > 2.0 * gap_below {
                     failures.push(format!(
                         "{} {below} below {name}: a gap of {gap}, {gap_below} at 0.1",
@@ -183,7 +190,8 @@ fn a_lamp_on_a_ceiling_resolves_the_room() {
                 let seen = lamp.ask().points(gpu(), &truth.points);
                 let wrong = truth.leaks_and_false_shadows(&seen);
                 let counts = truth.counts();
-                // From behind its surface the ceiling hides the room, but for a near plane that lies beyond it.
+                // From behind its surface the ceiling hides the room, but for a near plane that
+                // lies beyond it.
                 if below >= 0.0 && wrong != [0, 0] {
                     failures.push(format!(
                         "{} {below} below {name}: {wrong:?} wrong of {counts:?}",

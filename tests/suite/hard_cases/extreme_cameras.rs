@@ -51,8 +51,9 @@ fn lenses() -> Vec<(String, Lens, bool)> {
     lenses
 }
 
-/// The frame is accepted, and then every uniform is finite and every result a visibility; or the camera is refused, and
-/// then the visibilities are as before. Cameras that engines have are accepted.
+/// The frame is accepted, and then every uniform is finite and every result a visibility; or the
+/// camera is refused, and then the visibilities are as before. Cameras that engines have are
+/// accepted.
 #[test]
 fn any_lens_is_fitted_or_refused() {
     let gpu = gpu();

@@ -1,4 +1,5 @@
-//! Tests worlds that lie far from the world's origin, with and without an engine that renders relative to its camera.
+//! Tests worlds that lie far from the world's origin, with and without an engine that renders
+//! relative to its camera.
 
 use glam::{DMat3, DVec3};
 use shadow_support::probe::Point;
@@ -18,7 +19,8 @@ use crate::fixtures::view_member::with_member;
 const MAP_SIZE: u32 = 256;
 const FLOOR_HALF: f32 = 7.4;
 
-/// Returns what a frame at `origin` shows of a scene whose fit has texels and depth steps that are powers of two.
+/// Returns what a frame at `origin` shows of a scene whose fit has texels and depth steps that are
+/// powers of two.
 fn look_along(
     light: DVec3,
     origin: DVec3,
@@ -33,7 +35,8 @@ fn look_along(
         depth_format,
         ..Default::default()
     });
-    // The width is 15 under 249 usable texels: 0.0602 each, for which the next size is 1/16; the depth is 15: 16.
+    // The width is 15 under 249 usable texels: 0.0602 each, for which the next size is 1/16; the
+    // depth is 15: 16.
     sun.record(
         origin,
         DirectionalLight::new(light.as_vec3()),
@@ -50,14 +53,16 @@ fn look_along(
         .map(|_| random.point(DVec3::splat(-7.0), DVec3::new(7.0, 4.0, 7.0)))
         .map(|place| Point::rounded(place, -light))
         .collect();
-    // The grid of rotated patterns is fixed in the world, and so it is the only value that differs between positions.
+    // The grid of rotated patterns is fixed in the world, and so it is the only value that differs
+    // between positions.
     let uniforms = sun.shadow.maps().view_uniforms().iter();
     let uniforms = uniforms.map(|view| with_member(*view, "grid", 0_u32));
     (sun.ask(&points), uniforms.collect())
 }
 
-/// Under light along an axis, a position a power of two away lies a whole number of texels and depth steps away, and
-/// all arithmetic of the fit is exact in f64: not one bit of the uniforms or of the visibilities may differ.
+/// Under light along an axis, a position a power of two away lies a whole number of texels and
+/// depth steps away, and all arithmetic of the fit is exact in f64: not one bit of the uniforms or
+/// of the visibilities may differ.
 #[test]
 fn a_world_far_away_is_shadowed_to_the_bit() {
     let axes = [DVec3::NEG_Y, DVec3::X, DVec3::NEG_Z];
@@ -118,8 +123,8 @@ fn lights() -> [DVec3; 3] {
     ]
 }
 
-/// At other distances the grid of texels lies differently on the scene, so edges may move within a kernel; every
-/// receiver whose truth is the same for three texels around is correct.
+/// At other distances the grid of texels lies differently on the scene, so edges may move within a
+/// kernel; every receiver whose truth is the same for three texels around is correct.
 #[test]
 fn a_world_anywhere_far_away_is_shadowed_as_the_truth_says() {
     let mut all = Verdict::default();
@@ -156,10 +161,10 @@ fn a_world_anywhere_far_away_is_shadowed_as_the_truth_says() {
     );
 }
 
-/// Without an origin, f32 coordinates of a scene `P` away are off by half an ulp each, at most `2uP` together for
-/// caster and receiver on each axis, and the bias grows by `4uP`: settled receivers have that much more around them,
-/// and no surface shadows itself. Beyond 1e5 the scene is a hundred times as large, since an f32 has steps of one unit
-/// at 1e7.
+/// Without an origin, f32 coordinates of a scene `P` away are off by half an ulp each, at most
+/// `2uP` together for caster and receiver on each axis, and the bias grows by `4uP`: settled
+/// receivers have that much more around them, and no surface shadows itself. Beyond 1e5 the scene
+/// is a hundred times as large, since an f32 has steps of one unit at 1e7.
 #[test]
 fn render_coordinates_far_away_err_by_no_more_than_their_rounding() {
     let mut all = Verdict::default();

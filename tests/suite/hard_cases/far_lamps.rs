@@ -114,7 +114,8 @@ fn spot_axis() -> DVec3 {
     DVec3::new(0.5, -1.0, 0.25)
 }
 
-/// Returns positions all over the room, with normals toward the light, exact in f32 with their unit.
+/// Returns positions all over the room, with normals toward the light, exact in f32 with their
+/// unit.
 fn points(unit: f64) -> Vec<Point> {
     let mut random = Random::new(109);
     (0..3000)
@@ -129,7 +130,8 @@ fn points(unit: f64) -> Vec<Point> {
         .collect()
 }
 
-/// Positions in f64 relative to the origin are exact where the coordinates are, so all bits are the same.
+/// Positions in f64 relative to the origin are exact where the coordinates are, so all bits are the
+/// same.
 #[test]
 fn local_lights_far_away_are_the_same_to_the_bit() {
     let scene = scene(&room(1.0));
@@ -168,8 +170,8 @@ fn local_lights_far_away_are_the_same_to_the_bit() {
     );
 }
 
-/// In units that are powers of two no bit of a visibility changes; in others settled receivers are correct. The same
-/// holds at any distance with an origin.
+/// In units that are powers of two no bit of a visibility changes; in others settled receivers are
+/// correct. The same holds at any distance with an origin.
 #[test]
 fn local_lights_know_no_unit() {
     let points_of = points;
@@ -194,8 +196,8 @@ fn local_lights_know_no_unit() {
     );
 }
 
-/// Returns, as a tangent, the reach, half a texel of stairs and the residual offset, toward a face's corner along both
-/// axes at once.
+/// Returns, as a tangent, the reach, half a texel of stairs and the residual offset, toward a
+/// face's corner along both axes at once.
 fn tangent() -> f64 {
     3.5 * 2.0_f64.sqrt() * 1.05 * 2.0 / f64::from(MAP_SIZE)
 }

@@ -1,8 +1,8 @@
-//! Passes any numbers to every constructor and every per-frame call: each returns a result or an error, and the device
-//! reports no error.
+//! Passes any numbers to every constructor and every per-frame call: each returns a result or an
+//! error, and the device reports no error.
 //!
-//! Seeds are fixed; `PROPTEST_RNG_SEED` and `PROPTEST_CASES` explore further: the long run is `PROPTEST_CASES=10000
-//! cargo test --test suite hard_cases::fuzz`, which takes some minutes.
+//! Seeds are fixed; `PROPTEST_RNG_SEED` and `PROPTEST_CASES` explore further: the long run is
+//! `PROPTEST_CASES=10000 cargo test --test suite hard_cases::fuzz`, which takes some minutes.
 
 use std::cell::RefCell;
 
@@ -30,7 +30,8 @@ use crate::fixtures::gpu::gpu;
 use crate::fixtures::report::assert_whole;
 use crate::fixtures::watched::Watched;
 
-/// Whatever a descriptor contains, the object is made or an error says why not; no invalid request reaches the device.
+/// Whatever a descriptor contains, the object is made or an error says why not; no invalid request
+/// reaches the device.
 #[test]
 fn any_descriptor_is_taken_or_refused() {
     let counts = Counts::default();
@@ -284,8 +285,8 @@ fn pool_frame<'a, L>(
     }
 }
 
-/// Whatever a frame contains, it is accepted or refused; every result is a visibility, for invalid receivers as well;
-/// and a refused frame leaves all visibilities as they were.
+/// Whatever a frame contains, it is accepted or refused; every result is a visibility, for invalid
+/// receivers as well; and a refused frame leaves all visibilities as they were.
 #[test]
 fn any_frame_is_taken_or_refused() {
     let lights = RefCell::new(Lights::new());
@@ -327,7 +328,8 @@ fn any_frame_is_taken_or_refused() {
     );
 }
 
-/// A mesh accepts any matrix and any bounds, or refuses them; a refused transform leaves it where it was.
+/// A mesh accepts any matrix and any bounds, or refuses them; a refused transform leaves it where
+/// it was.
 #[test]
 fn any_mesh_is_taken_or_refused() {
     let counts = Counts::default();

@@ -22,8 +22,8 @@ fn name() -> impl Strategy<Value = String> {
     ]
 }
 
-/// Any names, group, stages and lights give a bind group whose WGSL compiles, or an error; any modules give a
-/// composition that compiles, or an error.
+/// Any names, group, stages and lights give a bind group whose WGSL compiles, or an error; any
+/// modules give a composition that compiles, or an error.
 #[test]
 fn any_bindings_are_taken_or_refused() {
     let gpu = gpu();

@@ -99,7 +99,8 @@ fn model() -> impl Strategy<Value = ModelTransform> {
     ]
 }
 
-/// Any vertex layout, state, formats and shader text give pipelines that can be drawn with, or an error.
+/// Any vertex layout, state, formats and shader text give pipelines that can be drawn with, or an
+/// error.
 #[test]
 fn any_pipeline_is_taken_or_refused() {
     const GOOD: &str = "@vertex fn v(@location(0) p: vec3<f32>) -> @builtin(position) vec4<f32> { return shadow_caster_clip(p); }\n@fragment fn f() {}";

@@ -22,8 +22,8 @@ enum Step {
     Record(Vec<usize>, f32),
 }
 
-/// Whatever the order, slots are returned once and removed once, and only occupied ones are recorded, each once per
-/// frame.
+/// Whatever the order, slots are returned once and removed once, and only occupied ones are
+/// recorded, each once per frame.
 #[test]
 fn any_coming_and_going_in_a_pool() {
     let gpu = gpu();

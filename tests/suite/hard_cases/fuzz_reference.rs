@@ -1,4 +1,5 @@
-//! Passes any numbers to the functions that need no device: the CPU reference of the shader, and boxes.
+//! Passes any numbers to the functions that need no device: the CPU reference of the shader, and
+//! boxes.
 
 use std::cell::Cell;
 
@@ -21,8 +22,8 @@ fn uniform() -> impl Strategy<Value = ShadowViewUniform> {
     })
 }
 
-/// Receivers of any numbers, those that the CPU reference returns among them, are sampled over maps of any size,
-/// complete or with texels missing.
+/// Receivers of any numbers, those that the CPU reference returns among them, are sampled over maps
+/// of any size, complete or with texels missing.
 #[test]
 fn any_numbers_in_the_reference_get_a_visibility() {
     let (answers, inside) = (Cell::new(0), Cell::new(0));
@@ -74,8 +75,8 @@ fn any_numbers_in_the_reference_get_a_visibility() {
     );
 }
 
-/// Boxes have any numbers: a union contains both, the transform of a box by a finite matrix is a box, and a broken box
-/// is not finite.
+/// Boxes have any numbers: a union contains both, the transform of a box by a finite matrix is a
+/// box, and a broken box is not finite.
 #[test]
 fn any_numbers_in_boxes() {
     let whole = Cell::new(0);

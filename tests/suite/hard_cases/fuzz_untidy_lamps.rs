@@ -101,9 +101,9 @@ impl Lit {
 }
 
 /// Returns whether an edge of a shadow or of the surface crosses the footprint of a lookup, as
-/// [`Lamp::truth`] has it, by many more rays than decide there: a corner may lie between those. Beyond
-/// an edge of the surface, rasterizers snap vertices to 1/256 of a texel, so that a side that falls
-/// away steeply may reach over the edge and darken a corner of the footprint.
+/// [`Lamp::truth`] has it, by many more rays than decide there: a corner may lie between those.
+/// Beyond an edge of the surface, rasterizers snap vertices to 1/256 of a texel, so that a side
+/// that falls away steeply may reach over the edge and darken a corner of the footprint.
 fn has_edge_near(scene: &Scene, light: DVec3, point: &Point, tangent: f64) -> bool {
     let meets = |at: DVec3, along: Range<f64>| {
         let hits = scene.triangles.iter();

@@ -1,5 +1,5 @@
-//! Generates values for every field, ordinary and invalid, and runs tests over them while watching the device for
-//! errors.
+//! Generates values for every field, ordinary and invalid, and runs tests over them while watching
+//! the device for errors.
 
 use std::cell::Cell;
 

@@ -1,4 +1,5 @@
-//! Grounds of two triangles that end a thousand kilometres away, under a lamp at 3 m: they do not shadow themselves.
+//! Grounds of two triangles that end a thousand kilometres away, under a lamp at 3 m: they do not
+//! shadow themselves.
 
 use std::f64::consts::TAU;
 
@@ -24,7 +25,8 @@ const GROUNDS: [f64; 6] = [30.0, 1e2, 1e3, 1e4, 1e5, 1e6];
 /// Up to this distance from the lamp's foot the ground is looked at.
 const NEAR: f64 = 20.0;
 
-/// Positions on the ground's own triangles, which rounding has tilted a little, with the normal of the lit side.
+/// Positions on the ground's own triangles, which rounding has tilted a little, with the normal of
+/// the lit side.
 fn points_on(triangles: &[Triangle], turn: DMat3, random: &mut Random) -> Vec<Point> {
     let mut points = Vec::new();
     for _ in 0..3000 {
@@ -42,9 +44,9 @@ fn points_on(triangles: &[Triangle], turn: DMat3, random: &mut Random) -> Vec<Po
     points
 }
 
-/// Corners are rounded by 2^-24 of their coordinates, and so is where a triangle is clipped at the sides of a map: the triangle
-/// is displaced by as much next to the lamp, 6 cm at a thousand kilometres. A box stands in the ground, so that the ground is
-/// among the casters.
+/// Corners are rounded by 2^-24 of their coordinates, and so is where a triangle is clipped at the
+/// sides of a map: the triangle is displaced by as much next to the lamp, 6 cm at a thousand
+/// kilometres. A box stands in the ground, so that the ground is among the casters.
 #[test]
 fn grounds_of_two_triangles_do_not_shadow_themselves() {
     let gpu = gpu();

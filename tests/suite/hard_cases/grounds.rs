@@ -1,5 +1,5 @@
-//! Tests grounds of any size that cast, with feet on and in them, and other objects that are far larger than what they
-//! shadow.
+//! Tests grounds of any size that cast, with feet on and in them, and other objects that are far
+//! larger than what they shadow.
 
 use glam::{DVec3, Mat4, Vec3};
 use shadow_support::camera::{Camera, Lens, Pose};
@@ -22,8 +22,8 @@ const LOW_LIGHT: DVec3 = DVec3::new(0.93, -0.31, -0.2);
 /// Lists the half sides of the grounds in metres, from a room to a county.
 const HALF_SIDES: [f32; 6] = [2.0, 5.0, 50.0, 500.0, 5e3, 5e4];
 
-/// Returns a ground and a robot of 0.8 m whose feet are `sunk` metres below it. The ground is a sheet, or a slab if
-/// `thickness` (in metres) is above 0.
+/// Returns a ground and a robot of 0.8 m whose feet are `sunk` metres below it. The ground is a
+/// sheet, or a slab if `thickness` (in metres) is above 0.
 fn meshes(half: f32, thickness: f32, sunk: f32) -> Vec<Mesh> {
     let ground = if thickness == 0.0 {
         Mesh::floor(0.0, half)
@@ -74,13 +74,14 @@ fn near_camera() -> Camera {
     )
 }
 
-/// Is the distance in metres from the edge of a shadow beyond which a receiver is settled: three texels of 2 mm,
-/// stretched by the slant of the light. The map of the robot alone has finer texels.
+/// Is the distance in metres from the edge of a shadow beyond which a receiver is settled: three
+/// texels of 2 mm, stretched by the slant of the light. The map of the robot alone has finer
+/// texels.
 const SETTLED: f64 = 0.012;
 
-/// Compares the visibilities of the ground around the robot with rays. A receiver is settled where rays from points
-/// `margin` metres around it agree. `triangles` does not contain the ground, because the rounding of its far corners
-/// would decide the result.
+/// Compares the visibilities of the ground around the robot with rays. A receiver is settled where
+/// rays from points `margin` metres around it agree. `triangles` does not contain the ground,
+/// because the rounding of its far corners would decide the result.
 fn around_robot(sun: &Sun, triangles: &[Triangle], light: DVec3, margin: f64) -> Verdict {
     let mut random = Random::new(5);
     let camera = near_camera();
@@ -102,8 +103,8 @@ fn around_robot(sun: &Sun, triangles: &[Triangle], light: DVec3, margin: f64) ->
     verdict
 }
 
-/// Checks that the robot's shadow is as fine on a ground of many kilometres as in a room, with one cascade, all
-/// defaults, and a camera without a far limit.
+/// Checks that the robot's shadow is as fine on a ground of many kilometres as in a room, with one
+/// cascade, all defaults, and a camera without a far limit.
 #[test]
 fn a_ground_of_any_size_leaves_shadows_sharp() {
     let mut all = Verdict::default();
@@ -127,8 +128,8 @@ fn a_ground_of_any_size_leaves_shadows_sharp() {
             all.add(&verdict);
         }
     }
-    // The robot and its shadow are 1.3 m wide. A map of 2048 texels has texels of 0.6 mm over them, and the quantized
-    // size may be one step larger.
+    // The robot and its shadow are 1.3 m wide. A map of 2048 texels has texels of 0.6 mm over them,
+    // and the quantized size may be one step larger.
     assert!(coarsest < 1.2e-3, "{coarsest}");
     table::record(
         "a robot of 0.8 m on grounds of half side 2 to 5e4 that cast: sheets and slabs, feet on and in them",
@@ -137,8 +138,9 @@ fn a_ground_of_any_size_leaves_shadows_sharp() {
     );
 }
 
-/// Checks that a ground of two triangles does not shadow itself, however far away its corners are, whether the map
-/// follows a camera or covers a fixed box. A foot is sunk into the ground, so that the ground is among the casters.
+/// Checks that a ground of two triangles does not shadow itself, however far away its corners are,
+/// whether the map follows a camera or covers a fixed box. A foot is sunk into the ground, so that
+/// the ground is among the casters.
 #[test]
 fn a_giant_ground_is_lit() {
     let mut random = Random::new(19);
@@ -146,7 +148,8 @@ fn a_giant_ground_is_lit() {
     for half in [500.0_f32, 3e3, 5e3, 1e4, 7e4, 2e5] {
         for light in [LIGHT, LOW_LIGHT, DVec3::new(0.7, -1.0, 0.02)] {
             let meshes = meshes(half, 0.0, 0.001);
-            // These casters keep the default shape, like those of an engine that does not state one.
+            // These casters keep the default shape, like those of an engine that does not state
+            // one.
             let pipeline = default_pipeline(gpu());
             let casters: Vec<_> = meshes
                 .iter()
@@ -215,7 +218,8 @@ fn a_giant_ground_is_lit() {
     );
 }
 
-/// Checks that a sky dome that neither casts nor receives does not change the shadows, whatever its radius.
+/// Checks that a sky dome that neither casts nor receives does not change the shadows, whatever its
+/// radius.
 #[test]
 fn a_sky_dome_leaves_shadows_alone() {
     let mut all = Verdict::default();
@@ -246,7 +250,8 @@ fn a_sky_dome_leaves_shadows_alone() {
     );
 }
 
-/// Checks that one object with far too large bounds, finite or not, does not change the shadows of the others.
+/// Checks that one object with far too large bounds, finite or not, does not change the shadows of
+/// the others.
 #[test]
 fn one_wild_box_leaves_other_shadows_in_place() {
     let mut all = Verdict::default();
@@ -275,7 +280,8 @@ fn one_wild_box_leaves_other_shadows_in_place() {
         });
         let coverage = Coverage::Camera(limited);
         let report = sun.record(DVec3::ZERO, shining(LIGHT), coverage, &list, &[]);
-        // The cascade around the robot has texels of 3 mm, and its depths are rounded to three texels.
+        // The cascade around the robot has texels of 3 mm, and its depths are rounded to three
+        // texels.
         let verdict = around_robot(&sun, &triangles(&meshes[1..]), LIGHT, 3.0 * SETTLED);
         verdict.assert_right(&format!("{bounds:?}"));
         all.add(&verdict);
@@ -294,7 +300,8 @@ fn one_wild_box_leaves_other_shadows_in_place() {
     );
 }
 
-/// Checks that the distance of an orthographic camera, which does not change what the camera sees, costs no texels.
+/// Checks that the distance of an orthographic camera, which does not change what the camera sees,
+/// costs no texels.
 #[test]
 fn an_orthographic_camera_may_be_far_away() {
     let mut all = Verdict::default();
@@ -324,8 +331,8 @@ fn an_orthographic_camera_may_be_far_away() {
             all.add(&verdict);
         }
     }
-    // The visible ground is 6 m deep along the view. A sphere around it has a radius of 3.9 m, which gives texels of
-    // 3.8 mm.
+    // The visible ground is 6 m deep along the view. A sphere around it has a radius of 3.9 m,
+    // which gives texels of 3.8 mm.
     assert!(coarsest < 5e-3, "{coarsest}");
     table::record(
         "orthographic cameras 4 to 1e4 away, both stabilities",

@@ -11,9 +11,10 @@ use super::table;
 use crate::fixtures::frames::Coverage;
 use crate::fixtures::gpu::gpu;
 
-/// A roof lies over a shelf over a floor, with a deep pit below: the floor and the shelf are dark to the last bit under
-/// every filter and derived bias, however thin roof and shelf are and however close to each other, as long as the
-/// receiver lies deeper below the roof than the reported gap. The roof's own top is lit.
+/// A roof lies over a shelf over a floor, with a deep pit below: the floor and the shelf are dark
+/// to the last bit under every filter and derived bias, however thin roof and shelf are and however
+/// close to each other, as long as the receiver lies deeper below the roof than the reported gap.
+/// The roof's own top is lit.
 #[test]
 fn nothing_leaks_through_a_stack() {
     let mut asked = 0;
@@ -40,7 +41,8 @@ fn nothing_leaks_through_a_stack() {
                         Vec3::new(-3.0, -pit as f32, -3.0),
                         Vec3::new(3.0, roof as f32, 3.0),
                     );
-                    // Slanted light reaches far sideways in a deep pit: there the map is as wide as the pit is deep.
+                    // Slanted light reaches far sideways in a deep pit: there the map is as wide as
+                    // the pit is deep.
                     if light.x != 0.0 && pit > 100.0 {
                         continue;
                     }

@@ -13,8 +13,8 @@ use crate::fixtures::rounding::U;
 const MAP_SIZE: u32 = 256;
 const FLOOR_HALF: f32 = 6.1;
 
-/// Returns the rotations that take light along -Y to light along each axis, by whole quarters, so that coordinates stay
-/// exact.
+/// Returns the rotations that take light along -Y to light along each axis, by whole quarters, so
+/// that coordinates stay exact.
 fn turns() -> Vec<DMat3> {
     let columns = |x, y, z| DMat3::from_cols(x, y, z);
     vec![
@@ -27,8 +27,8 @@ fn turns() -> Vec<DMat3> {
     ]
 }
 
-/// Returns the visibilities of the same positions of the same scene, rotated by `turn`, under light along the rotated
-/// -Y and `off` it.
+/// Returns the visibilities of the same positions of the same scene, rotated by `turn`, under light
+/// along the rotated -Y and `off` it.
 fn look(turn: DMat3, off: DVec3, places: &[DVec3]) -> Vec<f32> {
     let meshes = meshes(&boxes(), FLOOR_HALF, turn, DVec3::ZERO);
     let scene = scene(&meshes);
@@ -48,11 +48,12 @@ fn look(turn: DMat3, off: DVec3, places: &[DVec3]) -> Vec<f32> {
     sun.ask(&points)
 }
 
-/// The texels of rotated maps lie on the same grid, so only rounding differs. A texel coordinate errs by at most
-/// `14uN`: 6 roundings of a matrix row whose terms sum to at most 2N, and two of its entries. With two maps, two axes
-/// and a sharpness of three that is `168uN` of visibility. A deviation of 1e-7 moves a position by at most 1e-7 of the
-/// scene's 13 units, 0.05 to the texel, hence 3e-5 texels. Texel centres within 1/256 of an edge may flip: at most one
-/// receiver in a hundred, all of which lie where the boxes are.
+/// The texels of rotated maps lie on the same grid, so only rounding differs. A texel coordinate
+/// errs by at most `14uN`: 6 roundings of a matrix row whose terms sum to at most 2N, and two of
+/// its entries. With two maps, two axes and a sharpness of three that is `168uN` of visibility. A
+/// deviation of 1e-7 moves a position by at most 1e-7 of the scene's 13 units, 0.05 to the texel,
+/// hence 3e-5 texels. Texel centres within 1/256 of an edge may flip: at most one receiver in a
+/// hundred, all of which lie where the boxes are.
 #[test]
 fn light_along_an_axis_shadows_as_along_any_other() {
     let mut random = Random::new(5);

@@ -1,5 +1,5 @@
-//! Records many frames with lights that move, change and are made again: nothing accumulates, and what is dropped is
-//! freed.
+//! Records many frames with lights that move, change and are made again: nothing accumulates, and
+//! what is dropped is freed.
 //!
 //! `SHADOW_LONG=1` runs ten thousand frames instead of three hundred.
 
@@ -56,7 +56,8 @@ impl Counted {
         }
     }
 
-    /// Returns the number of objects by kind, once the device has finished its work and freed what was dropped.
+    /// Returns the number of objects by kind, once the device has finished its work and freed what
+    /// was dropped.
     fn objects(&self) -> [(&'static str, usize); 10] {
         self.device
             .poll(wgpu::PollType::wait_indefinitely())
@@ -252,9 +253,9 @@ fn mesh_caster(device: &wgpu::Device, pipeline: &CasterPipeline, mesh: &Mesh) ->
     MeshCaster::new(device, &descriptor).expect("a valid mesh")
 }
 
-/// Objects are counted at the end of each lifetime of the lights, at which all lifetimes have the same: there are as
-/// many after the last as after the second (the first warms up), and after everything is dropped, as many as before
-/// anything was made.
+/// Objects are counted at the end of each lifetime of the lights, at which all lifetimes have the
+/// same: there are as many after the last as after the second (the first warms up), and after
+/// everything is dropped, as many as before anything was made.
 #[test]
 fn nothing_piles_up_and_everything_is_freed() {
     let long = std::env::var("SHADOW_LONG").as_deref() == Ok("1");

@@ -49,7 +49,8 @@ fn reversed(mesh: &Mesh) -> Mesh {
     mesh
 }
 
-/// Returns the mesh negated along x, so that a transform that mirrors x gives the mesh itself, exactly.
+/// Returns the mesh negated along x, so that a transform that mirrors x gives the mesh itself,
+/// exactly.
 fn mirrored(mesh: &Mesh) -> Mesh {
     let mut mesh = mesh.clone();
     for position in &mut mesh.positions {
@@ -76,7 +77,8 @@ fn with_empty_triangles(mesh: &Mesh) -> Mesh {
     mesh
 }
 
-/// Returns the largest change of depth from a texel to one of its four neighbours, among those that are drawn.
+/// Returns the largest change of depth from a texel to one of its four neighbours, among those that
+/// are drawn.
 fn steepness(depths: &[f32], texel: usize) -> f64 {
     let (x, y) = (texel % SIZE, texel / SIZE);
     let beside = [
@@ -94,9 +96,10 @@ fn steepness(depths: &[f32], texel: usize) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// The order of a triangle's corners and an exact mirroring change no depth except by rounding, since interpolation may
-/// start from another corner: by no more than the derived bias allows for, 6u of the depth range and the change of
-/// depth over `6uN` texels. Triangles without area draw nothing, and not one texel is drawn more or less.
+/// The order of a triangle's corners and an exact mirroring change no depth except by rounding,
+/// since interpolation may start from another corner: by no more than the derived bias allows for,
+/// 6u of the depth range and the change of depth over `6uN` texels. Triangles without area draw
+/// nothing, and not one texel is drawn more or less.
 #[test]
 fn winding_mirroring_and_empty_triangles_change_nothing() {
     let solid = Mesh::sphere(Vec3::new(0.1, 0.2, -0.1), 1.1, 12);

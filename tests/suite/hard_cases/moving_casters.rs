@@ -26,7 +26,8 @@ fn samples() -> Vec<DVec3> {
         .collect()
 }
 
-/// Describes the moving casters of a scene, each a box around the origin, and their transforms in a frame.
+/// Describes the moving casters of a scene, each a box around the origin, and their transforms in a
+/// frame.
 struct Motion {
     name: &'static str,
     boxes: Vec<Vec3>,
@@ -60,7 +61,8 @@ fn motions() -> [Motion; 4] {
         Motion {
             name: "a growing crowd",
             boxes: crowd,
-            // Every twelve frames another caster rises from below the ground, each a little farther away.
+            // Every twelve frames another caster rises from below the ground, each a little farther
+            // away.
             transforms: |index, time| {
                 let joined = time * 60.0 >= 12.0 * index as f32;
                 let angle = index as f32 * 2.4;
@@ -108,7 +110,8 @@ impl Changes {
     }
 }
 
-/// Plays a motion and looks up the visibilities of receivers onto which no moving caster ever casts.
+/// Plays a motion and looks up the visibilities of receivers onto which no moving caster ever
+/// casts.
 fn play(
     motion: &Motion,
     mut record: impl FnMut(&[&dyn ShadowCaster]) -> f64,
@@ -155,7 +158,8 @@ fn play(
     changes
 }
 
-/// Checks that a static shadow changes in at most one frame of a hundred because other casters move.
+/// Checks that a static shadow changes in at most one frame of a hundred because other casters
+/// move.
 #[test]
 fn still_shadows_stay_still_beside_moving_casters() {
     let mut words = Vec::new();
@@ -168,7 +172,8 @@ fn still_shadows_stay_still_beside_moving_casters() {
     );
     let points = level(&samples(), DVec3::ZERO);
     for motion in &motions() {
-        // The walker and the crowd cast their shadows away from the box. The ball and the fan are beside it.
+        // The walker and the crowd cast their shadows away from the box. The ball and the fan are
+        // beside it.
         let changes = |descriptor: &DirectionalShadowDescriptor<'_>| {
             let sun = std::cell::RefCell::new(Sun::new(descriptor));
             play(

@@ -49,8 +49,8 @@ impl Both {
         }
     }
 
-    /// Returns the visibilities of the point light, and of the spot light that shines along the floor and a little
-    /// down.
+    /// Returns the visibilities of the point light, and of the spot light that shines along the
+    /// floor and a little down.
     fn look(&mut self, meshes: &[Mesh], light: DVec3, points: &[Point]) -> [Vec<f32>; 2] {
         let gpu = gpu();
         let scene = scene(meshes);
@@ -86,13 +86,14 @@ impl Both {
 /// Is a step of 8 bits.
 const STEP: f32 = 1.0 / 255.0;
 
-/// Are heights above the floor as fractions of the range. From the lowest, light reaches the floor's far end at 0.006
-/// degrees.
+/// Are heights above the floor as fractions of the range. From the lowest, light reaches the
+/// floor's far end at 0.006 degrees.
 const HEIGHTS: [f64; 4] = [1e-4, 1e-3, 1e-2, 0.1];
 
-/// The floor, which is in the maps, is lit everywhere, from under the light to the end of its range: the only tolerance
-/// is a step of 8 bits, by the derivation of the bias. A wall at half the range is lit on the light's side, farther
-/// above the floor than the kernels reach, and what is behind it is dark.
+/// The floor, which is in the maps, is lit everywhere, from under the light to the end of its
+/// range: the only tolerance is a step of 8 bits, by the derivation of the bias. A wall at half the
+/// range is lit on the light's side, farther above the floor than the kernels reach, and what is
+/// behind it is dark.
 #[test]
 fn lights_almost_on_a_surface() {
     let floor = Mesh::floor(0.0, 12.0);

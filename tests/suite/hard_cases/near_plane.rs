@@ -1,5 +1,5 @@
-//! Tests casters that begin before a near plane, be it that of the covered box, of the camera or of the light: nothing
-//! of them is cut off.
+//! Tests casters that begin before a near plane, be it that of the covered box, of the camera or of
+//! the light: nothing of them is cut off.
 
 use glam::{DVec3, Vec3};
 use shadow_support::camera::{Camera, Lens, Pose};
@@ -20,7 +20,8 @@ use crate::fixtures::gpu::gpu;
 use crate::fixtures::local_truth::settled;
 use crate::fixtures::scene::Scene;
 
-/// Returns a blade from below the floor to `top`, one triangle, which crosses every plane in between.
+/// Returns a blade from below the floor to `top`, one triangle, which crosses every plane in
+/// between.
 fn blade(x: f32, z: f32, top: f32) -> Mesh {
     let corner = Vec3::new(x, -0.3, z);
     Mesh {
@@ -33,7 +34,8 @@ fn blade(x: f32, z: f32, top: f32) -> Mesh {
     }
 }
 
-/// Compares the visibilities of the floor with rays, where 48 rays around, up to a kernel away, agree.
+/// Compares the visibilities of the floor with rays, where 48 rays around, up to a kernel away,
+/// agree.
 fn compare(sun: &Sun, scene: &Scene, light: DVec3, wanted: impl Fn(DVec3) -> bool) -> [usize; 3] {
     let mut random = Random::new(83);
     let texel = sun.texel();
@@ -63,8 +65,8 @@ fn compare(sun: &Sun, scene: &Scene, light: DVec3, wanted: impl Fn(DVec3) -> boo
     [wrong.count(), dark, truth.len() - dark]
 }
 
-/// Casters in the covered box or in the camera's volume extend out of it toward the sun, through the camera's near
-/// plane or behind it, up to a hundred kilometres; others lie outside completely.
+/// Casters in the covered box or in the camera's volume extend out of it toward the sun, through
+/// the camera's near plane or behind it, up to a hundred kilometres; others lie outside completely.
 #[test]
 fn nothing_is_cut_off_on_the_way_from_the_sun() {
     let cover = Aabb::new(Vec3::new(-5.0, -0.1, -5.0), Vec3::new(5.0, 0.4, 5.0));
@@ -127,8 +129,8 @@ fn nothing_is_cut_off_on_the_way_from_the_sun() {
     );
 }
 
-/// Returns a hall around a light, and long walls of two triangles that pass beside, above and below it, from far behind
-/// to far ahead.
+/// Returns a hall around a light, and long walls of two triangles that pass beside, above and below
+/// it, from far behind to far ahead.
 fn hall() -> Scene {
     let plank = |low: Vec3, high: Vec3| Mesh::cuboid(low, high);
     scene(&[
@@ -139,7 +141,8 @@ fn hall() -> Scene {
     ])
 }
 
-/// Walls whose triangles lie on both sides of the light's own planes are cut at the light and nowhere else.
+/// Walls whose triangles lie on both sides of the light's own planes are cut at the light and
+/// nowhere else.
 #[test]
 fn nothing_is_cut_off_beside_a_light() {
     let gpu = gpu();

@@ -11,9 +11,9 @@ use super::table;
 
 const MAP_SIZE: u32 = 256;
 
-/// Texel sizes are quantized, so that a unit that is not a power of two moves the grid: edges may move within a kernel,
-/// the texel may be one step larger (1.19 times), and every receiver whose truth is the same for three texels around is
-/// correct.
+/// Texel sizes are quantized, so that a unit that is not a power of two moves the grid: edges may
+/// move within a kernel, the texel may be one step larger (1.19 times), and every receiver whose
+/// truth is the same for three texels around is correct.
 #[test]
 fn no_unit_is_special() {
     let light = DVec3::new(0.31, -1.0, 0.22);

@@ -1,5 +1,5 @@
-//! Tests edges of shadows on the seams and corners of a point light's cube: they are as accurate as in the middle of
-//! its faces.
+//! Tests edges of shadows on the seams and corners of a point light's cube: they are as accurate as
+//! in the middle of its faces.
 
 use glam::{DVec3, Vec3};
 use shadow_support::mesh::Mesh;
@@ -16,8 +16,8 @@ use crate::fixtures::gpu::gpu;
 const EVERYWHERE: [Aabb; 1] = [Aabb::new(Vec3::splat(-20.0), Vec3::splat(20.0))];
 const MAP_SIZE: u32 = 256;
 
-/// Returns directions to the middle of faces, of edges and to corners, each slightly displaced so that texels lie
-/// differently.
+/// Returns directions to the middle of faces, of edges and to corners, each slightly displaced so
+/// that texels lie differently.
 fn directions(sums: &[usize], random: &mut Random) -> Vec<DVec3> {
     let mut found = Vec::new();
     for index in 0..27_u32 {
@@ -31,8 +31,9 @@ fn directions(sums: &[usize], random: &mut Random) -> Vec<DVec3> {
     found
 }
 
-/// Returns the mean difference from the truth around the outline of a square plate that faces the light in `direction`,
-/// in texels of a face's middle: the area between the shadow's edge and the true one, over the length of the outline.
+/// Returns the mean difference from the truth around the outline of a square plate that faces the
+/// light in `direction`, in texels of a face's middle: the area between the shadow's edge and the
+/// true one, over the length of the outline.
 fn edge_error(lamp: &mut OmniShadow, ask: &Ask, direction: DVec3, random: &mut Random) -> f64 {
     let gpu = gpu();
     let axis = direction.normalize();
@@ -60,7 +61,8 @@ fn edge_error(lamp: &mut OmniShadow, ask: &Ask, direction: DVec3, random: &mut R
     };
     lamp.reset_history();
     record_omni(gpu, lamp, &frame).expect("a frame");
-    // The receivers are on a square twice as far away, around its true shadow, which is twice as large.
+    // The receivers are on a square twice as far away, around its true shadow, which is twice as
+    // large.
     let texel = 2.0 / f64::from(MAP_SIZE);
     let band = 6.0 * texel * 4.0;
     let wide = 2.0 * half + band;
@@ -83,8 +85,9 @@ fn edge_error(lamp: &mut OmniShadow, ask: &Ask, direction: DVec3, random: &mut R
     area / (8.0 * 2.0 * half) / (4.0 * texel)
 }
 
-/// Texels are narrower in angle toward seams, so shadows there should be no less accurate than in the middle: the error
-/// is at most 1.2 times as large, which allows for the spread of six, twelve and eight samples.
+/// Texels are narrower in angle toward seams, so shadows there should be no less accurate than in
+/// the middle: the error is at most 1.2 times as large, which allows for the spread of six, twelve
+/// and eight samples.
 #[test]
 fn edges_at_seams_are_as_true_as_elsewhere() {
     let gpu = gpu();

@@ -17,11 +17,12 @@ use crate::fixtures::probe::{SunProbe, record};
 use crate::fixtures::random_scene::World;
 use crate::fixtures::scene::{Scene, default_pipeline};
 
-/// Bounds the rounding of a sum of at most 64 weights in f32, stretched three times by the default's sharpness.
+/// Bounds the rounding of a sum of at most 64 weights in f32, stretched three times by the
+/// default's sharpness.
 pub const SUM_ERROR: f32 = 192.0 * f32::EPSILON;
 
-/// Is the distance in texels of a settled receiver from every edge of a shadow: the default kernel reaches 2 per axis,
-/// at most 2.83 to its corner; the rest is for the snapping of vertices.
+/// Is the distance in texels of a settled receiver from every edge of a shadow: the default kernel
+/// reaches 2 per axis, at most 2.83 to its corner; the rest is for the snapping of vertices.
 pub const MARGIN: f64 = 3.0;
 
 /// Holds a sun with the probe that samples it.
@@ -109,8 +110,8 @@ pub fn any_camera() -> Camera {
     Camera::modern(DVec3::new(9.0, 7.0, 11.0), DVec3::ZERO, 1.0, 1.5)
 }
 
-/// Returns the meshes of `boxes` and of a floor that extends `half` from the middle, rotated by `turn` and moved by
-/// `shift`.
+/// Returns the meshes of `boxes` and of a floor that extends `half` from the middle, rotated by
+/// `turn` and moved by `shift`.
 pub fn meshes(boxes: &[(DVec3, DVec3)], half: f32, turn: DMat3, shift: DVec3) -> Vec<Mesh> {
     let cuboids = boxes
         .iter()
@@ -174,8 +175,8 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// Compares the visibilities of receivers at `places` with the truth, where that is settled for `margin` texels
-    /// around.
+    /// Compares the visibilities of receivers at `places` with the truth, where that is settled for
+    /// `margin` texels around.
     pub fn of(world: &World, places: &[DVec3], seen: &[f32], texel: f64, margin: f64) -> Self {
         let mut verdict = Self::default();
         for (place, seen) in places.iter().zip(seen) {

@@ -33,8 +33,8 @@ fn samples() -> Vec<DVec3> {
         .collect()
 }
 
-/// As long as the fitted views are the same, no sample changes by a bit, wherever the world lies; and they are the same
-/// in all but a twentieth of the frames.
+/// As long as the fitted views are the same, no sample changes by a bit, wherever the world lies;
+/// and they are the same in all but a twentieth of the frames.
 #[test]
 fn a_trembling_camera_leaves_shadows_alone() {
     let scene = scene(&meshes(&boxes(), 40.0, DMat3::IDENTITY, DVec3::ZERO));
@@ -77,9 +77,10 @@ fn a_trembling_camera_leaves_shadows_alone() {
     );
 }
 
-/// An engine that renders relative to its camera gives every sample new f32 coordinates in every frame. They err by
-/// `4u` of the distance each, and texel coordinates by `14uN` more; a sample changes by no more than the sharpness of
-/// three per texel and axis. Only where a comparison is a tie can more change: at most one sample in five hundred.
+/// An engine that renders relative to its camera gives every sample new f32 coordinates in every
+/// frame. They err by `4u` of the distance each, and texel coordinates by `14uN` more; a sample
+/// changes by no more than the sharpness of three per texel and axis. Only where a comparison is a
+/// tie can more change: at most one sample in five hundred.
 #[test]
 fn a_trembling_origin_leaves_shadows_alone() {
     let samples = samples();
@@ -89,7 +90,8 @@ fn a_trembling_origin_leaves_shadows_alone() {
         let mut first: Option<Vec<f32>> = None;
         let (mut flips, mut texel) = (0, None);
         for frame in 0..60 {
-            // The camera's position is in f32, exact in f64; coordinates relative to it are rounded.
+            // The camera's position is in f32, exact in f64; coordinates relative to it are
+            // rounded.
             let mut camera = trembling(frame);
             let eye = camera.pose.eye;
             camera.pose.eye = DVec3::ZERO;
@@ -138,9 +140,10 @@ fn town() -> Vec<Mesh> {
     meshes
 }
 
-/// A camera walks (1.5 units a second at 60 frames) and turns (20 degrees a second) through a town. Light-space bounds
-/// that keep their texel size move by whole texels, which is invisible; those that take another size step are visible,
-/// and of the four cascades' bounds at most a twentieth do so from one frame to the next.
+/// A camera walks (1.5 units a second at 60 frames) and turns (20 degrees a second) through a town.
+/// Light-space bounds that keep their texel size move by whole texels, which is invisible; those
+/// that take another size step are visible, and of the four cascades' bounds at most a twentieth do
+/// so from one frame to the next.
 #[test]
 fn windows_rarely_change_in_a_walk_through_a_town() {
     const FRAMES: u32 = 400;
@@ -193,9 +196,9 @@ fn windows_rarely_change_in_a_walk_through_a_town() {
     assert!(share(moved) <= 20.0, "{moved:?} of {FRAMES}");
 }
 
-/// Light-space bounds move by whole texels: where the texel size stays, what the camera sees before and after keeps its
-/// shadow to the rounding of texel coordinates (`56uN` in all, times the sharpness), except for ties of comparisons:
-/// one in five hundred.
+/// Light-space bounds move by whole texels: where the texel size stays, what the camera sees before
+/// and after keeps its shadow to the rounding of texel coordinates (`56uN` in all, times the
+/// sharpness), except for ties of comparisons: one in five hundred.
 #[test]
 fn a_window_that_moves_leaves_shadows_alone() {
     const MAP_SIZE: u32 = 512;

@@ -1,5 +1,5 @@
-//! Tests casters about as wide as a texel: whether a map contains them depends on chance, but on fair chance, and does
-//! not change.
+//! Tests casters about as wide as a texel: whether a map contains them depends on chance, but on
+//! fair chance, and does not change.
 
 use glam::{DMat2, DVec2, DVec3, Vec2, Vec3};
 use shadow_support::mesh::Mesh;
@@ -19,8 +19,8 @@ const SPACING: f64 = 14.0;
 /// Is the length of a bar in texels.
 const LENGTH: f64 = 6.0;
 
-/// Describes a field of bars `width` texels wide, each at a random position within a texel and rotated by a random
-/// angle or not at all.
+/// Describes a field of bars `width` texels wide, each at a random position within a texel and
+/// rotated by a random angle or not at all.
 struct Field {
     mesh: Mesh,
     middles: Vec<DVec2>,
@@ -92,11 +92,11 @@ fn record(sun: &mut Sun, field: &Field, nudge: f64) {
     assert_eq!(view.texel_size_world(), Vec2::splat(TEXEL as f32));
 }
 
-/// Over random positions within a texel, the mean number of texels that a bar darkens is its area, whatever its width
-/// and direction: within three standard deviations of the mean, which the spread among 1156 bars gives; where all bars
-/// darken alike, within a texel of the bar's border for each hundredth that falls on a texel's centre (snapping moves
-/// it by 1/256). From √2 texels on, every bar leaves a mark. A covered box that moves within its light-space bounds
-/// changes nothing.
+/// Over random positions within a texel, the mean number of texels that a bar darkens is its area,
+/// whatever its width and direction: within three standard deviations of the mean, which the spread
+/// among 1156 bars gives; where all bars darken alike, within a texel of the bar's border for each
+/// hundredth that falls on a texel's centre (snapping moves it by 1/256). From √2 texels on, every
+/// bar leaves a mark. A covered box that moves within its light-space bounds changes nothing.
 #[test]
 fn thin_casters_are_caught_in_proportion_to_their_width() {
     let mut worst: f64 = 0.0;

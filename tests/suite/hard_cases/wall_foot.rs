@@ -27,7 +27,8 @@ const HEIGHT: f32 = 12.0;
 enum Wall {
     /// Is a sheet without thickness.
     Sheet,
-    /// Is a solid of which the map contains the far sides, which touch the floor where the shadow begins.
+    /// Is a solid of which the map contains the far sides, which touch the floor where the shadow
+    /// begins.
     BackOfSolid,
 }
 
@@ -39,8 +40,8 @@ fn mesh(wall: Wall, foot: DVec3, along: DVec3, toward_light: DVec3) -> Mesh {
     if wall == Wall::Sheet {
         return sheet;
     }
-    // The wall is a box 2 thick toward the light: the same sheet, its parallel, a top, a bottom and two sides, with
-    // outward faces counter-clockwise.
+    // The wall is a box 2 thick toward the light: the same sheet, its parallel, a top, a bottom and
+    // two sides, with outward faces counter-clockwise.
     let thick = (toward_light * 2.0).as_vec3();
     let at = |k: u32| {
         let pick = |bit: u32, v: Vec3| if k >> bit & 1 == 1 { v } else { Vec3::ZERO };
@@ -68,8 +69,8 @@ fn mesh(wall: Wall, foot: DVec3, along: DVec3, toward_light: DVec3) -> Mesh {
     }
 }
 
-/// Returns the distances in texels from the foot, as the light sees them, at which the last receiver is half lit, and
-/// at which the last is lit at all.
+/// Returns the distances in texels from the foot, as the light sees them, at which the last
+/// receiver is half lit, and at which the last is lit at all.
 fn gaps(sun: &mut Sun, wall: Wall, elevation: f64, heading: f64, random: &mut Random) -> DVec2 {
     let gpu = gpu();
     let along = DVec3::new(heading.cos(), 0.0, heading.sin());
@@ -126,10 +127,11 @@ fn gaps(sun: &mut Sun, wall: Wall, elevation: f64, heading: f64, random: &mut Ra
     worst
 }
 
-/// Seen along the light, a texel has the depth of its centre, half a diagonal away at most, so the middle of the edge
-/// lies within 0.71 texels of the foot; the residual offset moves it by 0.1 √2 sin² cos ≤ 0.06, and receivers are 1/16
-/// apart. Light comes in as far as the kernel reaches, √2 K, and no farther: under the derived bias there is no strip
-/// of light at a foot, at any elevation of the light.
+/// Seen along the light, a texel has the depth of its centre, half a diagonal away at most, so the
+/// middle of the edge lies within 0.71 texels of the foot; the residual offset moves it by 0.1 √2
+/// sin² cos ≤ 0.06, and receivers are 1/16 apart. Light comes in as far as the kernel reaches, √2
+/// K, and no farther: under the derived bias there is no strip of light at a foot, at any elevation
+/// of the light.
 #[test]
 fn shadows_begin_at_the_foot_of_a_wall() {
     let step = 1.0 / STEPS as f64;

@@ -7,7 +7,8 @@ use wgpu_shadows::CameraView;
 /// Is the aspect ratio of the images of generated scenes: width by height.
 const ASPECT: f32 = 16.0 / 9.0;
 
-/// Describes the position and orientation of a camera: view space is right-handed and looks along -z.
+/// Describes the position and orientation of a camera: view space is right-handed and looks along
+/// -z.
 #[derive(Clone, Copy, Debug)]
 pub struct Pose {
     pub eye: DVec3,
@@ -30,7 +31,8 @@ impl Pose {
 /// Describes what a camera sees of the space before it.
 #[derive(Clone, Copy, Debug)]
 pub enum Lens {
-    /// Has sides as tangents of angles (left, right, bottom, top), which need not be symmetric; `far` may be infinite.
+    /// Has sides as tangents of angles (left, right, bottom, top), which need not be symmetric;
+    /// `far` may be infinite.
     Perspective {
         sides: [f64; 4],
         near: f64,
@@ -53,7 +55,8 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Returns a symmetric perspective camera with an infinite reversed depth range, as modern engines have it.
+    /// Returns a symmetric perspective camera with an infinite reversed depth range, as modern
+    /// engines have it.
     pub fn modern(eye: DVec3, target: DVec3, fov_y: f64, aspect: f64) -> Self {
         let top = (fov_y * 0.5).tan();
         Self {
@@ -75,7 +78,8 @@ impl Camera {
             (right + left) / (right - left),
             (top + bottom) / (top - bottom),
         );
-        // This is the depth before the division by w: `a * z + b` with z negative in front of the camera.
+        // This is the depth before the division by w: `a * z + b` with z negative in front of the
+        // camera.
         let (a, b) = match (perspective, self.reversed, far.is_finite()) {
             (true, false, true) => (far / (near - far), near * far / (near - far)),
             (true, false, false) => (-1.0, -near),
@@ -115,8 +119,8 @@ impl Camera {
         )
     }
 
-    /// Returns the ray through a position of the image, whose coordinates are in 0..1: its start, and its direction per
-    /// unit of depth.
+    /// Returns the ray through a position of the image, whose coordinates are in 0..1: its start,
+    /// and its direction per unit of depth.
     pub fn ray(&self, across: f64, up: f64) -> (DVec3, DVec3) {
         let (sides, perspective, ..) = self.parts();
         let [left, right, bottom, top] = sides;
@@ -131,8 +135,8 @@ impl Camera {
         }
     }
 
-    /// Returns whether a point is in the image, nearer than `limit` along the view, and not within `margin` (a fraction
-    /// of the image and of the depth) of its borders.
+    /// Returns whether a point is in the image, nearer than `limit` along the view, and not within
+    /// `margin` (a fraction of the image and of the depth) of its borders.
     pub fn sees(&self, point: DVec3, limit: f64, margin: f64) -> bool {
         let (sides, perspective, near, far) = self.parts();
         let [left, right, bottom, top] = sides;

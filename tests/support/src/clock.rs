@@ -5,7 +5,8 @@ use std::time::Instant;
 use crate::gpu::Gpu;
 use crate::readback;
 
-/// Uses timestamps where the device has them, and otherwise the wall clock around submission and completion.
+/// Uses timestamps where the device has them, and otherwise the wall clock around submission and
+/// completion.
 pub struct Clock<'a> {
     gpu: &'a Gpu,
     queries: Option<(wgpu::QuerySet, wgpu::Buffer)>,

@@ -13,7 +13,8 @@ pub fn check_ray_caster() {
     sun_behind_an_edge_is_covered_in_proportion();
 }
 
-/// Under parallel light in the plane z = 0, the shadow of an axis-aligned box on level ground is a rectangle.
+/// Under parallel light in the plane z = 0, the shadow of an axis-aligned box on level ground is a
+/// rectangle.
 fn shadow_of_a_box_is_a_rectangle() {
     let slant = 0.7;
     let mesh = Mesh::floor(0.0, 10.0).joined(Mesh::cuboid(
@@ -42,8 +43,8 @@ fn shadow_of_a_box_is_a_rectangle() {
     }
 }
 
-/// From a point, a sphere hides the cone whose half-angle has the sine radius / distance. The mesh lies inside the
-/// sphere, by at most the height of its patches.
+/// From a point, a sphere hides the cone whose half-angle has the sine radius / distance. The mesh
+/// lies inside the sphere, by at most the height of its patches.
 fn shadow_of_a_sphere_is_a_cone() {
     let (middle, radius, rings) = (DVec3::new(0.3, 3.0, -0.2), 1.0, 64);
     let light = DVec3::new(1.0, 7.0, 0.5);
@@ -76,7 +77,8 @@ fn shadow_of_a_sphere_is_a_cone() {
     assert!(hidden > 1_000 && lit > 1_000, "both sides must be tried");
 }
 
-/// A half-plane whose edge passes `offset` radii from the middle of the disc leaves the area of a circle's segment.
+/// A half-plane whose edge passes `offset` radii from the middle of the disc leaves the area of a
+/// circle's segment.
 fn sun_behind_an_edge_is_covered_in_proportion() {
     let tangent = 0.01;
     let height = 5.0;
@@ -87,7 +89,8 @@ fn sun_behind_an_edge_is_covered_in_proportion() {
     );
     let world = world(&mesh, DVec3::Y, tangent);
     for offset in [-0.9, -0.5, 0.0, 0.3, 0.8] {
-        // The sheet covers x > 0 at `height`; seen from x0 the disc's middle is x0 / height to one side of the edge.
+        // The sheet covers x > 0 at `height`; seen from x0 the disc's middle is x0 / height to one
+        // side of the edge.
         let place = DVec3::new(offset * tangent * f64::from(height), 0.0, 0.0);
         let visible = world.visibility(place, DVec3::Y, 32);
         let expected =

@@ -10,7 +10,9 @@
 //! probe.rs      a compute shader that evaluates WGSL at given points
 //! scene.rs      meshes, a light and a camera; scenes.rs: the generated ones
 //! truth.rs      the ray caster, checked by closed_form.rs
-//! technique.rs  anything that fills maps and is looked up: library.rs, textbook/
+//! technique.rs  anything that fills maps and is looked up: library.rs, textbook/; what a lookup
+//!               costs: lookup_cost.rs
+//! compositions/ every shader that the library emits, for checks by compilers
 //! measure/      errors and costs of techniques in scenes, as tables and charts
 //! ```
 
@@ -18,8 +20,10 @@ pub mod bind;
 pub mod camera;
 pub mod clock;
 pub mod closed_form;
+pub mod compositions;
 pub mod gpu;
 pub mod library;
+pub mod lookup_cost;
 pub mod measure;
 pub mod mesh;
 pub mod probe;

@@ -10,6 +10,7 @@ use wgpu_shadows::{
 };
 
 use crate::gpu::Gpu;
+use crate::lookup_cost;
 use crate::mesh::render_space_pipeline;
 use crate::scene::{Light, Scene};
 use crate::technique::{Cost, Footprint, LIGHT_NAME, Lookup, Technique};
@@ -233,7 +234,12 @@ impl Technique for LibraryTechnique<'_> {
             draws: self.report.draws(),
             passes: self.report.passes,
             bytes: self.report.bytes_held,
-            texture_instructions: self.options.filter.texture_instructions(),
+            lookup_cycles: lookup_cost::library(
+                &self.scene.light,
+                self.options.cascades,
+                self.options.filter,
+                self.options.bias,
+            ),
             texels_touched: texels_touched(self.options.filter),
         }
     }
@@ -243,7 +249,8 @@ impl Technique for LibraryTechnique<'_> {
     }
 
     fn band_world(&self) -> f64 {
-        // These are the corners of the cube of offsets, which grows up to twofold with the distance from the camera.
+        // These are the corners of the cube of offsets, which grows up to twofold with the distance
+        // from the camera.
         2.0 * 3f64.sqrt() * f64::from(self.options.filter.radius_world())
     }
 

@@ -42,7 +42,8 @@ impl Mesh {
         Self { positions, indices }
     }
 
-    /// Returns a closed box that stands at `foot` (the middle of its lower face) and is rotated about its upright axis.
+    /// Returns a closed box that stands at `foot` (the middle of its lower face) and is rotated
+    /// about its upright axis.
     pub fn standing_box(foot: Vec3, size: Vec3, turn_radians: f32) -> Self {
         let half = Vec3::new(size.x * 0.5, 0.0, size.z * 0.5);
         let mut mesh = Self::cuboid(-half, half.with_y(size.y));
@@ -92,7 +93,8 @@ impl Mesh {
         )
     }
 
-    /// Returns a closed sphere of `rings` by `2 * rings` patches, with its corners on the true sphere.
+    /// Returns a closed sphere of `rings` by `2 * rings` patches, with its corners on the true
+    /// sphere.
     pub fn sphere(center: Vec3, radius: f32, rings: u32) -> Self {
         let columns = 2 * rings;
         let mut mesh = Self::default();
@@ -124,7 +126,8 @@ impl Mesh {
         mesh
     }
 
-    /// Returns the surface `y = height(x, z)` over a square from `-half` to `half`, in `cells` by `cells` squares.
+    /// Returns the surface `y = height(x, z)` over a square from `-half` to `half`, in `cells` by
+    /// `cells` squares.
     pub fn terrain(half: f32, cells: u32, height: impl Fn(f32, f32) -> f32) -> Self {
         let mut mesh = Self::default();
         let place = |index: u32| 2.0 * half * index as f32 / cells as f32 - half;

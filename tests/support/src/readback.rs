@@ -4,7 +4,8 @@ use crate::gpu::Gpu;
 
 /// Returns one layer of a depth texture, rows from the top.
 ///
-/// A compute shader gathers the texels: the OpenGL backend neither copies nor loads from depth textures.
+/// A compute shader gathers the texels: the OpenGL backend neither copies nor loads from depth
+/// textures.
 pub fn depth_layer(gpu: &Gpu, texture: &wgpu::Texture, layer: u32) -> Vec<f32> {
     let size = texture.width();
     let texels = u64::from(size) * u64::from(size);
@@ -69,7 +70,8 @@ const DEPTH_SHADER: &str = "
 fn read(@builtin(global_invocation_id) id: vec3<u32>) {
     let size = textureDimensions(map);
     if all(id.xy < size) {
-        // This is the corner where four texels meet; the last component of the gather is the upper left one.
+        // This is the corner where four texels meet; the last component of the gather is the upper
+        // left one.
         let corner = vec2<f32>(id.xy + 1u) / vec2<f32>(size);
         depths[id.y * size.x + id.x] = textureGather(map, point_sampler, corner, layer.x).w;
     }

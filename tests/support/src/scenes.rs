@@ -27,7 +27,8 @@ pub fn all() -> Vec<Scene> {
     ]
 }
 
-/// Returns boxes on level ground under an afternoon sun, far from the world's origin where `origin` is.
+/// Returns boxes on level ground under an afternoon sun, far from the world's origin where `origin`
+/// is.
 pub fn boxes(name: &'static str, origin: DVec3) -> Scene {
     let mut random = Random::new(1);
     let mut meshes = vec![Mesh::floor(0.0, 25.0)];
@@ -125,7 +126,8 @@ fn thin() -> Scene {
     }
 }
 
-/// Returns boxes and plates of one to eight centimetres that lie on the ground: too much bias removes their shadows.
+/// Returns boxes and plates of one to eight centimetres that lie on the ground: too much bias
+/// removes their shadows.
 fn contact() -> Scene {
     let mut random = Random::new(4);
     let mut meshes = vec![Mesh::floor(0.0, 12.0)];
@@ -219,7 +221,8 @@ fn town() -> Scene {
     }
 }
 
-/// Returns open sheets, some of them a few centimetres apart: sails, leaves and cloths without an inside.
+/// Returns open sheets, some of them a few centimetres apart: sails, leaves and cloths without an
+/// inside.
 fn sheets() -> Scene {
     let mut random = Random::new(7);
     let mut meshes = vec![Mesh::floor(0.0, 15.0)];
@@ -315,8 +318,8 @@ fn point() -> Scene {
     }
 }
 
-/// Returns masts and boxes under a sun of its true width, about half a degree, which shows what a hard map misses of
-/// the penumbra.
+/// Returns masts and boxes under a sun of its true width, about half a degree, which shows what a
+/// hard map misses of the penumbra.
 fn soft() -> Scene {
     let mut random = Random::new(9);
     let mut meshes = vec![Mesh::floor(0.0, 25.0)];

@@ -49,18 +49,19 @@ pub struct Cost {
     pub draws: u32,
     pub passes: u32,
     pub bytes: u64,
-    /// Is the number per shaded pixel.
-    pub texture_instructions: u32,
+    /// Is the number of SIMD cycles of the lookup per shaded pixel, on the chip of
+    /// [`lookup_cost`](crate::lookup_cost).
+    pub lookup_cycles: f64,
     /// Is the number per shaded pixel.
     pub texels_touched: u32,
 }
 
 impl Cost {
-    /// Returns the one number that orders techniques: the memory operations of a frame of 1920×1080 shaded pixels,
-    /// which are the texels of the maps cleared once and the texture instructions of every pixel.
+    /// Returns the one number that orders techniques: the work of a frame of 1920×1080 shaded
+    /// pixels, which is the texels of the maps cleared once and the cycles of every pixel's lookup.
     pub fn frame_work(&self) -> f64 {
         const PIXELS: f64 = 1920.0 * 1080.0;
-        self.texels_cleared as f64 + PIXELS * f64::from(self.texture_instructions)
+        self.texels_cleared as f64 + PIXELS * self.lookup_cycles
     }
 }
 

@@ -12,8 +12,8 @@ use crate::triangle::Triangle;
 pub struct World {
     mesh: TriMesh,
     normals: Vec<DVec3>,
-    /// Is the distance at which rays start from the surface that they leave, along its normal: far above rounding, far
-    /// below any feature.
+    /// Is the distance at which rays start from the surface that they leave, along its normal: far
+    /// above rounding, far below any feature.
     lift: f64,
     light: LightInWorld,
 }
@@ -60,9 +60,9 @@ impl World {
         )
     }
 
-    /// Makes the world. `diameter` is the size of the scene, from which the least distance of rays is derived.
-    /// Triangles without area, which no ray meets and which have no normal, are left out; at least one other must
-    /// remain.
+    /// Makes the world. `diameter` is the size of the scene, from which the least distance of rays
+    /// is derived. Triangles without area, which no ray meets and which have no normal, are left
+    /// out; at least one other must remain.
     pub fn from_triangles(triangles: &[Triangle], diameter: f64, light: LightInWorld) -> Self {
         let with_normals: Vec<([DVec3; 3], DVec3)> = triangles
             .iter()
@@ -99,8 +99,8 @@ impl World {
         })
     }
 
-    /// Returns the distance from a surface point to the first thing between it and the middle of the light; `None`
-    /// where it is lit.
+    /// Returns the distance from a surface point to the first thing between it and the middle of
+    /// the light; `None` where it is lit.
     pub fn occluder(&self, position: DVec3, normal: DVec3) -> Option<f64> {
         let (direction, reach) = self.light.toward_light_from(position);
         self.occluder_along(position, normal, direction, reach)
@@ -119,9 +119,9 @@ impl World {
             .is_none()
     }
 
-    /// Returns the fraction of the light that a surface point sees: exact for lights without extent, otherwise the mean
-    /// over `side * side` stratified points of its disc. Where the rim and a coarse grid agree, so does everything
-    /// between.
+    /// Returns the fraction of the light that a surface point sees: exact for lights without
+    /// extent, otherwise the mean over `side * side` stratified points of its disc. Where the rim
+    /// and a coarse grid agree, so does everything between.
     pub fn visibility(&self, position: DVec3, normal: DVec3, side: u32) -> f64 {
         let (toward_light, reach) = self.light.toward_light_from(position);
         let disc_tangent = self.light.disc_tangent_from(reach);
@@ -206,7 +206,8 @@ impl LightInWorld {
         }
     }
 
-    /// Returns the tangent of half the angle under which the light is seen from a distance of `reach`.
+    /// Returns the tangent of half the angle under which the light is seen from a distance of
+    /// `reach`.
     fn disc_tangent_from(&self, reach: f64) -> f64 {
         match *self {
             Self::Far { disc_tangent, .. } => disc_tangent,
@@ -245,8 +246,8 @@ impl LightInWorld {
     }
 }
 
-/// Returns the middles of `side * side` patches of equal area on the unit disc (the concentric map of Shirley and Chiu
-/// 1997).
+/// Returns the middles of `side * side` patches of equal area on the unit disc (the concentric map
+/// of Shirley and Chiu 1997).
 fn disc_points(side: u32) -> impl Iterator<Item = [f64; 2]> + Clone {
     let place = move |index: u32| 2.0 * (f64::from(index) + 0.5) / f64::from(side) - 1.0;
     (0..side * side).map(move |index| {

@@ -1,4 +1,5 @@
-//! Loads a glTF file as triangles, textures, lights and a camera, with every node transform multiplied out in f64.
+//! Loads a glTF file as triangles, textures, lights and a camera, with every node transform
+//! multiplied out in f64.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -82,8 +83,8 @@ fn placed_nodes(document: &gltf::Document) -> Result<Vec<Placed<'_>>, String> {
         let world_from_node = world_from_parent * parent_from_node(&node.transform());
         let first_child = open.len();
         open.extend(node.children().map(|child| (child, world_from_node)));
-        // The order is depth first as in the file, so that "the first camera" is what a reader of the file would call
-        // so.
+        // The order is depth first as in the file, so that "the first camera" is what a reader of
+        // the file would call so.
         open[first_child..].reverse();
         placed.push(Placed {
             node,
@@ -261,7 +262,8 @@ fn world_instances(
     Ok(instances)
 }
 
-/// Returns the camera of that number, or in a file without cameras one that sees everything from above its corner.
+/// Returns the camera of that number, or in a file without cameras one that sees everything from
+/// above its corner.
 fn find_camera(
     placed: &[Placed<'_>],
     number: usize,

@@ -1,4 +1,5 @@
-//! Defines a scene once it is loaded. World space is f64; render space is world minus the camera's position, in f32.
+//! Defines a scene once it is loaded. World space is f64; render space is world minus the camera's
+//! position, in f32.
 
 use glam::camera::rh::proj::directx as proj;
 use glam::{DMat4, DVec3, Mat4, Vec3, Vec4};
@@ -61,7 +62,8 @@ pub enum LightKind {
 }
 
 impl LightKind {
-    /// Returns half of the angle that a spot light spans, which is slightly below a right angle at most.
+    /// Returns half of the angle that a spot light spans, which is slightly below a right angle at
+    /// most.
     pub fn outer_angle_radians(self) -> f32 {
         match self {
             Self::Spot {

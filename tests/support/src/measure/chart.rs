@@ -309,6 +309,6 @@ fn short(value: f64) -> String {
         let text = format!("{value:.4}");
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     } else {
-        format!("{value:.0e}")
+        format!("{value:.1e}").replace(".0e", "e")
     }
 }

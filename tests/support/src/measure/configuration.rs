@@ -11,8 +11,8 @@ use crate::scene::{Light, SUN_DIAMETER_RADIANS};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Configuration {
     pub method: Method,
-    /// Is the number of texels per side of a sun's map. Spot lights and the faces of point lights have half of that, as
-    /// the library's defaults do.
+    /// Is the number of texels per side of a sun's map. Spot lights and the faces of point lights
+    /// have half of that, as the library's defaults do.
     pub map_size: u32,
     /// States that maps cover what the camera sees; otherwise they cover the whole scene.
     pub fits_camera: bool,
@@ -27,14 +27,15 @@ pub enum Method {
         filter: Filter,
         bias: Bias,
     },
-    /// Uses the tutorial's final version for suns and spot lights, and its grid of 64 for point lights.
+    /// Uses the tutorial's final version for suns and spot lights, and its grid of 64 for point
+    /// lights.
     Textbook,
     /// Uses the tutorial's 20 directions, for point lights.
     TextbookStar,
 }
 
-/// Is the manual bias that is measured in addition to the derived ones: the tutorial's constants in metres, over a
-/// depth of four.
+/// Is the manual bias that is measured in addition to the derived ones: the tutorial's constants in
+/// metres, over a depth of four.
 const MANUAL: Bias = Bias::Manual {
     constant: 0.02,
     slope: 0.2,
@@ -55,8 +56,8 @@ impl Configuration {
         Self::shipped(&DirectionalShadowDescriptor::default())
     }
 
-    /// Returns the configuration of a descriptor of the library, for a camera, with as many cascades as the scene
-    /// needs.
+    /// Returns the configuration of a descriptor of the library, for a camera, with as many
+    /// cascades as the scene needs.
     pub fn shipped(descriptor: &DirectionalShadowDescriptor<'_>) -> Self {
         Self {
             method: Method::Library {
@@ -117,8 +118,8 @@ impl Configuration {
         }
     }
 
-    /// Returns whether the configuration suits a light: direction-space filters are for point lights only, and those
-    /// with a light size for lights that have one.
+    /// Returns whether the configuration suits a light: direction-space filters are for point
+    /// lights only, and those with a light size for lights that have one.
     pub fn suits(&self, light: &Light) -> bool {
         let is_point = matches!(light, Light::Point { .. });
         match self.method {

@@ -1,7 +1,8 @@
-//! Measures how far a surface point is from the edge of a shadow, by rings of rays on its tangent plane.
+//! Measures how far a surface point is from the edge of a shadow, by rings of rays on its tangent
+//! plane.
 //!
-//! Distances are measured across the light's rays, as a shadow map sees them, so that they can be divided by the size
-//! of a texel.
+//! Distances are measured across the light's rays, as a shadow map sees them, so that they can be
+//! divided by the size of a texel.
 
 use glam::DVec3;
 
@@ -16,7 +17,8 @@ pub struct Rings {
     rays: u32,
 }
 
-/// Is the ratio of the radius of a ring to that of the one before; the last one found is refined by halving.
+/// Is the ratio of the radius of a ring to that of the one before; the last one found is refined by
+/// halving.
 const RATIO: f64 = 1.6;
 const HALVINGS: u32 = 4;
 
@@ -32,8 +34,8 @@ impl Rings {
     }
 }
 
-/// Returns the distance to the nearest edge, to within a few percent for straight edges; infinite where no ring meets
-/// one.
+/// Returns the distance to the nearest edge, to within a few percent for straight edges; infinite
+/// where no ring meets one.
 pub fn distance(world: &World, position: DVec3, normal: DVec3, rings: &Rings) -> f64 {
     if rings.rays == 0 {
         return f64::INFINITY;
@@ -56,7 +58,8 @@ pub fn distance(world: &World, position: DVec3, normal: DVec3, rings: &Rings) ->
     while !ring_changes(outer, turn) {
         inner = outer;
         outer *= RATIO;
-        // Rings are rotated against each other, so that a thin shadow does not pass through all of them unnoticed.
+        // Rings are rotated against each other, so that a thin shadow does not pass through all of
+        // them unnoticed.
         turn = (turn + 0.618_034) % 1.0;
         if outer > rings.greatest {
             return f64::INFINITY;
@@ -73,8 +76,8 @@ pub fn distance(world: &World, position: DVec3, normal: DVec3, rings: &Rings) ->
     0.5 * (inner + outer)
 }
 
-/// Returns the position on the tangent plane that lies `radius` to the side of `position`, across the light's rays;
-/// `None` where the ray there does not meet the plane before the light.
+/// Returns the position on the tangent plane that lies `radius` to the side of `position`, across
+/// the light's rays; `None` where the ray there does not meet the plane before the light.
 fn on_plane(
     light: &LightInWorld,
     position: DVec3,

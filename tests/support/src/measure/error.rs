@@ -5,7 +5,8 @@ use super::pixels::Pixel;
 /// Is the distance in texels along the light's ray below which an occluder makes a contact.
 const CONTACT_TEXELS: f64 = 16.0;
 
-/// Holds the errors of one image. Percentages are shares of the pixels that could have had the error.
+/// Holds the errors of one image. Percentages are shares of the pixels that could have had the
+/// error.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Errors {
     /// Is the root of the mean squared error of the visibility, over all pixels.
@@ -16,10 +17,11 @@ pub struct Errors {
     pub false_shadow_percent: f64,
     /// Counts light on shadowed pixels away from edges, where the occluder is close: peter-panning.
     pub contact_light_percent: f64,
-    /// Is the largest distance from its occluder, in texels, at which a shadowed pixel is still lit.
+    /// Is the largest distance from its occluder, in texels, at which a shadowed pixel is still
+    /// lit.
     pub contact_reach_texels: f64,
-    /// Counts light on shadowed pixels away from edges, where the occluder is far: bleeding. It is zero for a correct
-    /// shadow map.
+    /// Counts light on shadowed pixels away from edges, where the occluder is far: bleeding. It is
+    /// zero for a correct shadow map.
     pub deep_light_percent: f64,
     /// Is the area on the wrong side of one half per length of edge, in texels.
     pub edge_aliasing_texels: f64,
@@ -31,7 +33,8 @@ pub struct Errors {
     pub non_finite: usize,
 }
 
-/// Holds the distance from an edge within which pixels count as edge: a number of texels, and a length.
+/// Holds the distance from an edge within which pixels count as edge: a number of texels, and a
+/// length.
 #[derive(Clone, Copy, Debug)]
 pub struct Band {
     pub texels: f64,
@@ -40,8 +43,8 @@ pub struct Band {
 
 /// Compares the visibilities of a technique with the truth.
 ///
-/// `texel_world` is the size of a texel at each pixel, across the light's rays; `None` where the technique has no map
-/// there.
+/// `texel_world` is the size of a texel at each pixel, across the light's rays; `None` where the
+/// technique has no map there.
 pub fn compare(
     pixels: &[Pixel],
     answers: &[f32],

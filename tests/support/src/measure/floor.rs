@@ -1,5 +1,5 @@
-//! Computes the least edge aliasing that a filter can have: straight edges at random positions and angles, through the
-//! library's CPU reference.
+//! Computes the least edge aliasing that a filter can have: straight edges at random positions and
+//! angles, through the library's CPU reference.
 
 use std::f64::consts::TAU;
 
@@ -35,8 +35,8 @@ impl Floors {
     }
 }
 
-/// Returns the area on the wrong side of one half per length of a straight edge, in texels, for a map whose texels are
-/// hidden where their middle is.
+/// Returns the area on the wrong side of one half per length of a straight edge, in texels, for a
+/// map whose texels are hidden where their middle is.
 fn edge_aliasing_texels(filter: Filter) -> f64 {
     let mut random = Random::new(21);
     // The samples extend as far to either side as the filter's result can differ from the truth.

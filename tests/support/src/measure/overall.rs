@@ -13,8 +13,8 @@ pub struct Overall {
     pub misclassified_percent: f64,
     pub false_shadow_percent: f64,
     pub false_light_percent: f64,
-    /// Is the mean of the texture instructions per shaded pixel.
-    pub texture_instructions: f64,
+    /// Is the mean of the lookup's SIMD cycles per shaded pixel.
+    pub lookup_cycles: f64,
     /// Is the mean of the texels allocated.
     pub texels: f64,
     /// Is the mean over the scenes of the work per frame.
@@ -69,7 +69,7 @@ fn mean(configuration: Configuration, samples: &[&Sample]) -> Overall {
         false_light_percent: mean(|sample| {
             sample.errors.contact_light_percent + sample.errors.deep_light_percent
         }),
-        texture_instructions: mean(|sample| f64::from(sample.cost.texture_instructions)),
+        lookup_cycles: mean(|sample| sample.cost.lookup_cycles),
         texels: mean(|sample| sample.cost.texels_allocated as f64),
         cost: mean(|sample| sample.cost.frame_work()),
         time_ratio: mean(|sample| sample.ratios.total.median.ln()).exp(),
@@ -77,8 +77,8 @@ fn mean(configuration: Configuration, samples: &[&Sample]) -> Overall {
     }
 }
 
-/// Returns whether a configuration is on the front of work per frame against rmse. The sentence names what dominates
-/// it.
+/// Returns whether a configuration is on the front of work per frame against rmse. The sentence
+/// names what dominates it.
 pub fn judge(entries: &[Overall], configuration: &Configuration) -> Result<String, String> {
     let own = find(entries, configuration)?;
     let front = "on the Pareto front of work per frame against rmse";
@@ -100,19 +100,15 @@ pub fn other_views(entries: &[Overall]) -> Result<Vec<String>, String> {
     let answer = |costs: &str, beaten: Option<&Overall>| match beaten {
         None => format!("with {costs}, nothing beats the default"),
         Some(other) => format!(
-            "with {costs}, {} beats the default (rmse {:.4}, {:.1} instructions, {:.2e} texels, time ratio {:.2})",
-            other.configuration,
-            other.rmse,
-            other.texture_instructions,
-            other.texels,
-            other.time_ratio
+            "with {costs}, {} beats the default (rmse {:.4}, {:.1} cycles, {:.2e} texels, time ratio {:.2})",
+            other.configuration, other.rmse, other.lookup_cycles, other.texels, other.time_ratio
         ),
     };
     Ok(vec![
         answer(
-            "instructions and texels as two costs",
+            "cycles and texels as two costs",
             beaten_by(entries, own, |entry| {
-                [entry.texture_instructions, entry.texels, entry.rmse]
+                [entry.lookup_cycles, entry.texels, entry.rmse]
             }),
         ),
         answer(

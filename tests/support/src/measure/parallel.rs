@@ -7,7 +7,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 const BLOCK: usize = 128;
 
-/// Returns a bar for `count` steps of what `label` names, on standard error; it is silent where that is not a terminal.
+/// Returns a bar for `count` steps of what `label` names, on standard error; it is silent where
+/// that is not a terminal.
 pub fn bar(label: &str, count: usize) -> ProgressBar {
     let style = ProgressStyle::with_template("{msg:32} {bar:40} {pos}/{len} {eta}")
         .expect("a valid template");

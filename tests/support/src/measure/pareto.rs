@@ -1,7 +1,7 @@
 //! Finds what nothing else dominates.
 
-/// Returns for each entry of costs, smaller being better in all of them, whether it is on the Pareto front: whether no
-/// other entry is at most as large in every cost and smaller in one.
+/// Returns for each entry of costs, smaller being better in all of them, whether it is on the
+/// Pareto front: whether no other entry is at most as large in every cost and smaller in one.
 pub fn front<const N: usize>(entries: &[[f64; N]]) -> Vec<bool> {
     entries
         .iter()

@@ -6,7 +6,8 @@ use image::{GrayImage, Luma};
 
 use super::pixels::Pixel;
 
-/// Writes images of `size` side by side: visibility as grey, and one dark grey where nothing was sampled.
+/// Writes images of `size` side by side: visibility as grey, and one dark grey where nothing was
+/// sampled.
 pub fn write(
     path: &Path,
     [width, height]: [u32; 2],

@@ -21,8 +21,9 @@ pub struct Pixel {
     pub visibility: f64,
     /// Is the distance toward the light of what hides its middle; `None` where that is seen.
     pub occluder_world: Option<f64>,
-    /// Is the distance across the light's rays to the nearest position on the tangent plane where the middle of the
-    /// light turns from seen to hidden or back; infinite where that is farther than any filter reaches.
+    /// Is the distance across the light's rays to the nearest position on the tangent plane where
+    /// the middle of the light turns from seen to hidden or back; infinite where that is farther
+    /// than any filter reaches.
     pub edge_world: f64,
 }
 
@@ -33,8 +34,8 @@ pub struct Effort {
     pub picture: [u32; 2],
     /// Is the number of points of a light with extent, per side of their square.
     pub disc_side: u32,
-    /// Is the number of rays per ring in the search for edges; with 0 none are searched for, and errors at edges then
-    /// count as acne and leaks.
+    /// Is the number of rays per ring in the search for edges; with 0 none are searched for, and
+    /// errors at edges then count as acne and leaks.
     pub ring_rays: u32,
 }
 

@@ -33,7 +33,7 @@ pub fn print_scene(samples: &[Sample], all_rows: bool) {
         "edge/floor",
         "shift",
         "penum.",
-        "instr",
+        "cycles",
         "Mtexel",
         "time ratio"
     );
@@ -54,7 +54,7 @@ pub fn print_scene(samples: &[Sample], all_rows: bool) {
             format!("{:.3}", errors.penumbra_rmse)
         };
         println!(
-            "{} {:44} {:7.4} {:7.3} {:7.3} {:8.3} {:6.1} {:7.3} {:5.2}/{:5.2} {:6.2} {:>6} {:5} {:8.2} {:5.2} ({:.2}-{:.2}){}",
+            "{} {:44} {:7.4} {:7.3} {:7.3} {:8.3} {:6.1} {:7.3} {:5.2}/{:5.2} {:6.2} {:>6} {:5.1} {:8.2} {:5.2} ({:.2}-{:.2}){}",
             if is_on_front { '*' } else { ' ' },
             configuration.to_string(),
             errors.rmse,
@@ -67,7 +67,7 @@ pub fn print_scene(samples: &[Sample], all_rows: bool) {
             sample.edge_floor_texels,
             errors.edge_shift_texels,
             penumbra,
-            cost.texture_instructions,
+            cost.lookup_cycles,
             cost.texels_allocated as f64 * 1e-6,
             time.median,
             time.lower_quartile,
@@ -97,7 +97,7 @@ pub fn print_overall(entries: &[Overall]) {
     );
     println!(
         "  {:44} {:>7} {:>7} {:>7} {:>7} {:>6} {:>8} {:>10} {:>10}",
-        "", "rmse", "wrong%", "acne%", "leak%", "instr", "Mtexel", "cost", "time ratio"
+        "", "rmse", "wrong%", "acne%", "leak%", "cycles", "Mtexel", "cost", "time ratio"
     );
     let mut rows: Vec<_> = entries.iter().collect();
     rows.sort_by(|a, b| a.rmse.total_cmp(&b.rmse));
@@ -110,7 +110,7 @@ pub fn print_overall(entries: &[Overall]) {
             entry.misclassified_percent,
             entry.false_shadow_percent,
             entry.false_light_percent,
-            entry.texture_instructions,
+            entry.lookup_cycles,
             entry.texels * 1e-6,
             entry.cost,
             entry.time_ratio,
@@ -127,7 +127,7 @@ pub fn write_samples(path: &Path, samples: &[Sample]) -> io::Result<()> {
     let mut text = String::from(
         "scene,configuration,map_size,fits_camera,rmse,misclassified_percent,false_shadow_percent,contact_light_percent,\
          contact_reach_texels,deep_light_percent,edge_aliasing_texels,edge_aliasing_floor_texels,edge_shift_texels,\
-         penumbra_rmse,non_finite,texels_allocated,texels_cleared,draws,passes,bytes,texture_instructions,texels_touched,\
+         penumbra_rmse,non_finite,texels_allocated,texels_cleared,draws,passes,bytes,lookup_cycles,texels_touched,\
          time_ratio,time_ratio_lower_quartile,time_ratio_upper_quartile,maps_time_ratio,lookups_time_ratio\n",
     );
     for sample in samples {
@@ -150,7 +150,7 @@ pub fn write_samples(path: &Path, samples: &[Sample]) -> io::Result<()> {
             f64::from(cost.draws),
             f64::from(cost.passes),
             cost.bytes as f64,
-            f64::from(cost.texture_instructions),
+            cost.lookup_cycles,
             f64::from(cost.texels_touched),
             ratios.total.median,
             ratios.total.lower_quartile,
@@ -178,7 +178,7 @@ pub fn write_samples(path: &Path, samples: &[Sample]) -> io::Result<()> {
 pub fn write_overall(path: &Path, entries: &[Overall]) -> io::Result<()> {
     let mut text = String::from(
         "configuration,map_size,fits_camera,rmse,misclassified_percent,false_shadow_percent,false_light_percent,\
-         texture_instructions,texels,frame_work,time_ratio,on_front\n",
+         lookup_cycles,texels,frame_work,time_ratio,on_front\n",
     );
     for entry in entries {
         let configuration = &entry.configuration;
@@ -192,7 +192,7 @@ pub fn write_overall(path: &Path, entries: &[Overall]) -> io::Result<()> {
             entry.misclassified_percent,
             entry.false_shadow_percent,
             entry.false_light_percent,
-            entry.texture_instructions,
+            entry.lookup_cycles,
             entry.texels,
             entry.cost,
             entry.time_ratio,

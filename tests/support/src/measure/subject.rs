@@ -26,14 +26,16 @@ pub struct Sample {
     pub is_soft: bool,
     pub configuration: Configuration,
     pub errors: Errors,
-    /// Is the least edge aliasing of the configuration's filter, in texels; NaN where it is not known.
+    /// Is the least edge aliasing of the configuration's filter, in texels; NaN where it is not
+    /// known.
     pub edge_floor_texels: f64,
     pub cost: Cost,
     /// Holds times as multiples of the textbook's, run by run.
     pub ratios: Ratios,
 }
 
-/// Holds times divided by that of [`Configuration::BASELINE`], run right before; NaN where nothing was timed.
+/// Holds times divided by that of [`Configuration::BASELINE`], run right before; NaN where nothing
+/// was timed.
 #[derive(Clone, Copy, Debug)]
 pub struct Ratios {
     pub maps: Spread,
@@ -55,7 +57,8 @@ pub struct Stopwatch<'a> {
     pub repeats: u32,
 }
 
-/// Holds a scene on the device, with the truth about what its camera sees: everything that its measurements share.
+/// Holds a scene on the device, with the truth about what its camera sees: everything that its
+/// measurements share.
 pub struct Subject<'a> {
     gpu: &'a Gpu,
     scene: &'a Scene,

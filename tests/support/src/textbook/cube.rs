@@ -7,6 +7,7 @@ use super::meshes::{ViewUniform, WorldMeshes, depth_pipeline, lookup_types, map_
 use crate::bind;
 use crate::camera;
 use crate::gpu::Gpu;
+use crate::lookup_cost;
 use crate::scene::{Light, Scene};
 use crate::technique::{Cost, Footprint, Lookup, Technique};
 
@@ -18,7 +19,8 @@ const NEAR: f64 = 1.0;
 pub enum CubeFilter {
     /// Is a grid of 4×4×4 offsets, with a bias of 0.05.
     Grid,
-    /// Is 20 fixed directions whose spread grows with the distance from the camera, with a bias of 0.15.
+    /// Is 20 fixed directions whose spread grows with the distance from the camera, with a bias of
+    /// 0.15.
     Star,
 }
 
@@ -144,7 +146,7 @@ impl Technique for CubeTechnique<'_> {
             draws: 6 * self.meshes.count(),
             passes: 6,
             bytes: 4 * texels,
-            texture_instructions: samples,
+            lookup_cycles: lookup_cost::textbook_cube(samples),
             texels_touched: samples,
         }
     }
@@ -154,8 +156,8 @@ impl Technique for CubeTechnique<'_> {
     }
 
     fn band_world(&self) -> f64 {
-        // These are the corners of the cube of offsets: 0.1 wide, or 1/25 and up to twice that with the distance from
-        // the camera.
+        // These are the corners of the cube of offsets: 0.1 wide, or 1/25 and up to twice that with
+        // the distance from the camera.
         3f64.sqrt()
             * match self.filter {
                 CubeFilter::Grid => 0.1,
@@ -168,8 +170,8 @@ impl Technique for CubeTechnique<'_> {
     }
 }
 
-/// Returns the clip space of the faces +x, -x, +y, -y, +z, -z from coordinates relative to the light, oriented as cube
-/// maps are sampled.
+/// Returns the clip space of the faces +x, -x, +y, -y, +z, -z from coordinates relative to the
+/// light, oriented as cube maps are sampled.
 fn cube_faces(far: f64) -> [DMat4; 6] {
     [
         (DVec3::NEG_Z, DVec3::Y, DVec3::X),

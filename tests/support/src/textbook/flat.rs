@@ -6,6 +6,7 @@ use wgpu_shadows::ShadowError;
 use super::meshes::{ViewUniform, WorldMeshes, depth_pipeline, lookup_types, map_with_sampler};
 use crate::bind;
 use crate::gpu::Gpu;
+use crate::lookup_cost;
 use crate::scene::{Light, Scene};
 use crate::technique::{Cost, Footprint, Lookup, Technique};
 
@@ -129,7 +130,7 @@ impl Technique for FlatTechnique<'_> {
             draws: self.meshes.count(),
             passes: 1,
             bytes: 4 * texels,
-            texture_instructions: 9,
+            lookup_cycles: lookup_cost::textbook_flat(),
             texels_touched: 9,
         }
     }
@@ -143,7 +144,8 @@ impl Technique for FlatTechnique<'_> {
     }
 }
 
-/// Returns the scene's bounds as seen along `direction`: -1 to 1 across, depth 0 to 1 away from the light.
+/// Returns the scene's bounds as seen along `direction`: -1 to 1 across, depth 0 to 1 away from the
+/// light.
 fn orthographic(scene: &Scene, direction: DVec3) -> DMat4 {
     let light_from_render = looking_along(direction);
     let bounds = scene.bounds();
@@ -182,8 +184,8 @@ fn perspective(position: DVec3, direction: DVec3, outer_angle: f64, far: f64) ->
     clip_from_light * looking_along(direction) * DMat4::from_translation(-position)
 }
 
-/// Returns right-handed axes that look along `direction`, as `lookAt` with +Y up does, and with another up vector where
-/// they look along +Y.
+/// Returns right-handed axes that look along `direction`, as `lookAt` with +Y up does, and with
+/// another up vector where they look along +Y.
 fn looking_along(direction: DVec3) -> DMat4 {
     let back = -direction.normalize();
     let right = DVec3::Y.cross(back).try_normalize().unwrap_or(DVec3::X);

@@ -127,7 +127,8 @@ impl WorldMeshes {
     }
 }
 
-/// Creates the depth pipeline of `source`, with a fragment stage where one is named, and the layout of its only group.
+/// Creates the depth pipeline of `source`, with a fragment stage where one is named, and the layout
+/// of its only group.
 pub fn depth_pipeline(
     gpu: &Gpu,
     source: &str,

@@ -5,8 +5,9 @@ use glam::{DVec2, I64Vec2, UVec2};
 use crate::receive::Filter;
 use crate::receive::reference::{DepthLayer, Receiver};
 
-/// Returns the visibility of the light in [0, 1] that `filter` computes for `receiver`; for a direction-space filter,
-/// that of one of its samples. The result is 1 for a receiver that is not inside.
+/// Returns the visibility of the light in [0, 1] that `filter` computes for `receiver`; for a
+/// direction-space filter, that of one of its samples. The result is 1 for a receiver that is not
+/// inside.
 pub fn visibility(filter: Filter, map: &DepthLayer<'_>, receiver: &Receiver) -> f64 {
     if !receiver.inside || receiver.texel.is_nan() {
         return 1.0;
@@ -42,8 +43,8 @@ pub fn visibility(filter: Filter, map: &DepthLayer<'_>, receiver: &Receiver) -> 
     }
 }
 
-/// Returns the reference depth at a texel: that of the receiver's tangent plane, never farther from the light than the
-/// receiver.
+/// Returns the reference depth at a texel: that of the receiver's tangent plane, never farther from
+/// the light than the receiver.
 fn reference_depth(receiver: &Receiver, texel: I64Vec2) -> f64 {
     let center = texel.as_dvec2() + 0.5;
     receiver.depth + receiver.gradient.dot(center - receiver.texel).max(0.0)
@@ -80,15 +81,16 @@ fn sharpened(visibility: f64, sharpness: f64) -> f64 {
     if ramp.is_nan() { visibility } else { ramp }.clamp(0.0, 1.0)
 }
 
-/// Returns the visibility that `wgsl/filter_pcss.wgsl` computes, with sample patterns rotated by `turn` (cosine and
-/// sine).
+/// Returns the visibility that `wgsl/filter_pcss.wgsl` computes, with sample patterns rotated by
+/// `turn` (cosine and sine).
 fn penumbra(map: &DepthLayer<'_>, receiver: &Receiver, turn: DVec2) -> f64 {
     const REACH: f64 = 32.0;
     let widest =
         (receiver.penumbra * (1.0 - receiver.depth)).clamp(DVec2::ONE, DVec2::splat(REACH));
     let (mut height_sum, mut count) = (0.0, 0.0);
     for index in 0..24 {
-        // Samples lie closer together toward the middle; each is weighted by the area that it stands for.
+        // Samples lie closer together toward the middle; each is weighted by the area that it
+        // stands for.
         let t = (f64::from(index) + 0.5) / 24.0;
         let offset = turn.rotate(DVec2::from_angle(f64::from(index) * GOLDEN_ANGLE)) * t.powf(1.5);
         let first = (receiver.texel + offset * widest - 0.5)
@@ -124,8 +126,8 @@ fn penumbra(map: &DepthLayer<'_>, receiver: &Receiver, turn: DVec2) -> f64 {
     hard + (soft - hard) * share
 }
 
-/// Returns cosine and sine of the angle by which the half texel of a receiver rotates the sample patterns, as in
-/// `wgsl/filter_pcss_rotated.wgsl`.
+/// Returns cosine and sine of the angle by which the half texel of a receiver rotates the sample
+/// patterns, as in `wgsl/filter_pcss_rotated.wgsl`.
 fn turn(receiver: &Receiver) -> DVec2 {
     let half_texel = (receiver.texel.max(DVec2::ZERO) * 2.0).as_uvec2();
     let first = UVec2::new(receiver.grid & 0xffff, receiver.grid >> 16);
@@ -140,7 +142,8 @@ fn turn(receiver: &Receiver) -> DVec2 {
 /// Is the golden angle in radians, with the digits that the shader uses.
 const GOLDEN_ANGLE: f64 = std::f64::consts::TAU * 0.38196601;
 
-/// Returns `count` points spread evenly over the unit disk along a golden-angle spiral (Vogel 1979).
+/// Returns `count` points spread evenly over the unit disk along a golden-angle spiral (Vogel
+/// 1979).
 fn disk(count: u32) -> impl Iterator<Item = DVec2> {
     (0..count).map(move |index| {
         let radius = ((f64::from(index) + 0.5) / f64::from(count)).sqrt();
@@ -174,8 +177,8 @@ fn kernel(filter: Filter) -> Kernel {
     }
 }
 
-/// Returns the weights of the texels along an axis, from the first that contributes, for a position that is `fraction`
-/// of a texel past a centre.
+/// Returns the weights of the texels along an axis, from the first that contributes, for a position
+/// that is `fraction` of a texel past a centre.
 fn bilinear_weights(row: &[f64], fraction: f64) -> Vec<f64> {
     let sum: f64 = row.iter().sum();
     (0..=row.len())

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use shadow_isa::Figures;
+use crate::Figures;
 
 /// Is the first line of the columns.
 const COLUMNS: &str = "composition,family,vgprs,waves,instructions,latency,inverse_throughput";
@@ -14,14 +14,19 @@ const TOLERANCE: f64 = 0.03;
 /// Holds the figures of one version of the driver.
 #[derive(Default)]
 pub struct Table {
+    /// Names the driver and its version.
     pub driver: String,
+    /// Holds the rows in the order in which they were compiled.
     pub rows: Vec<Row>,
 }
 
 /// Holds the figures of a shader on one chip.
 pub struct Row {
+    /// Names the shader.
     pub composition: String,
+    /// Names the chip.
     pub family: String,
+    /// Holds what the compiler says.
     pub figures: Figures,
 }
 
@@ -60,9 +65,9 @@ impl Row {
 }
 
 impl Table {
-    /// Returns the table as CSV, with the driver in a first line that begins with `#`.
+    /// Returns the rows as CSV.
     pub fn csv(&self) -> String {
-        let mut text = format!("# {}\n{COLUMNS}\n", self.driver);
+        let mut text = format!("{COLUMNS}\n");
         for row in &self.rows {
             text += &row.csv();
             text.push('\n');
@@ -70,7 +75,11 @@ impl Table {
         text
     }
 
-    /// Returns the table that `text` holds, or a message that names the line that does not.
+    /// Returns the table that `text` holds: rows as CSV, below a line that begins with `#` and
+    /// names the driver.
+    ///
+    /// # Errors
+    /// Returns a message that names the first line that is no row.
     pub fn parse(text: &str) -> Result<Self, String> {
         let mut table = Self::default();
         for line in text.lines() {

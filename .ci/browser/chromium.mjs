@@ -1,0 +1,41 @@
+// Opens headless Chromium with WebGPU and WebGL 2 in software, at a page of this machine.
+
+import http from 'node:http';
+import { chromium } from 'playwright-core';
+
+const FLAGS = [
+  '--enable-unsafe-webgpu',
+  '--use-webgpu-adapter=swiftshader',
+  '--enable-features=Vulkan',
+  '--use-angle=swiftshader',
+  '--enable-unsafe-swiftshader',
+  // Chromium refuses its sandbox to root, which containers run as.
+  ...(process.getuid() === 0 ? ['--no-sandbox'] : []),
+];
+
+// Calls `body(page, problems)`. `problems` collects what the page says: warnings, errors and exceptions.
+export async function withPage(body) {
+  // WebGPU is there only for pages of a secure context, which those of the local machine are.
+  const server = http.createServer((_, response) => {
+    response.setHeader('content-type', 'text/html');
+    response.end('<!doctype html><link rel="icon" href="data:,"><title>checks</title>');
+  });
+  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
+  const executablePath = process.env.CHROMIUM ?? '/usr/bin/chromium';
+  const browser = await chromium.launch({ executablePath, headless: true, args: FLAGS });
+  try {
+    const page = await browser.newPage();
+    const problems = [];
+    page.on('console', (message) => {
+      if (['warning', 'error'].includes(message.type())) problems.push(`console: ${message.text()}`);
+    });
+    page.on('pageerror', (error) => problems.push(`exception: ${error}`));
+    page.on('crash', () => problems.push('the page crashed'));
+    await page.goto(`http://127.0.0.1:${server.address().port}/`);
+    console.log(`Chromium ${browser.version()}`);
+    return await body(page, problems);
+  } finally {
+    await browser.close();
+    server.close();
+  }
+}
