@@ -73,16 +73,16 @@ const TEXELS_BY_SAMPLES: ShaderModule = ShaderModule {
 pub const MODULES: &[ShaderModule] = &[
     module!("view", "view.wgsl", []),
     module!("place", "place.wgsl", ["view"]),
-    module!("rounding", "rounding.wgsl", ["view", "place"]),
+    module!("raised_plane", "raised_plane.wgsl", ["view", "place"]),
     module!(
         "bias_plane",
         "bias_plane.wgsl",
-        ["view", "place", "rounding"]
+        ["view", "place", "raised_plane"]
     ),
     module!(
         "bias_normal_offset",
         "bias_normal_offset.wgsl",
-        ["view", "place", "rounding"]
+        ["view", "place", "raised_plane"]
     ),
     module!("bias_manual", "bias_manual.wgsl", ["view", "place"]),
     module!("texels", "texels.wgsl", ["view"]),

@@ -9,7 +9,7 @@ use crate::receive::{Bias, Filter, ShadowViewUniform};
 /// Is the steepest gradient in depth per texel: `SHADOW_MAX_GRADIENT` of `wgsl/bias_plane.wgsl`.
 const MAX_GRADIENT: f64 = 1e4;
 
-/// Is `SHADOW_POSITION_ROUNDING` of `wgsl/rounding.wgsl`.
+/// Is `SHADOW_POSITION_ROUNDING` of `wgsl/raised_plane.wgsl`.
 const POSITION_ROUNDING: f64 = 2.0 * f32::EPSILON as f64;
 
 /// Is the least weight of a cascade. It is above 0, so that every position within a cascade has a
@@ -151,7 +151,7 @@ impl<'a> Map<'a> {
     }
 
     /// Returns the world distance by which a plane at a signed distance of `height` from a local
-    /// light is moved toward it for rounding, as `shadow_local_rounding` of `wgsl/rounding.wgsl`
+    /// light is moved toward it for rounding, as `shadow_local_rounding` of `wgsl/raised_plane.wgsl`
     /// does.
     fn local_rounding(&self, light: DVec3, height: f64) -> f64 {
         let rounding =
@@ -173,7 +173,7 @@ fn directional_plane(map: &Map<'_>, light: DVec3, normal: DVec3) -> Moved {
     let rise = normal.truncate() * map.texel_size;
     let offset = map.offset_texels * rise.abs().element_sum() + map.rounding;
     let gradient = if normal.z.abs() > 0.0 {
-        limited(-rise / normal.z * map.depth_scale, MAX_GRADIENT)
+        limited(-rise / normal.z * map.depth_scale)
     } else {
         DVec2::ZERO
     };
@@ -192,9 +192,11 @@ fn local_plane(map: &Map<'_>, light: DVec3, normal: DVec3) -> Moved {
     let rise = normal.truncate() * map.texel_size;
     let wanted = map.offset_texels * -light.z * rise.abs().element_sum();
     let offset = wanted.min(0.5 * (height.abs() - rounding));
-    let plane = raised_plane(map, light, normal, &Lift { rounding, offset }, MAX_GRADIENT);
+    let plane = raised_plane(map, light, normal, &Lift { rounding, offset });
+    let gradient = limited(plane.gradient);
     Moved {
-        depth: plane.depth + map.slack(plane.gradient),
+        depth: plane.depth + map.slack(gradient),
+        gradient,
         ..plane
     }
 }
@@ -213,13 +215,7 @@ fn local_normal_offset(map: &Map<'_>, light: DVec3, normal: DVec3) -> Moved {
             gradient: DVec2::ZERO,
         };
     }
-    let plane = raised_plane(
-        map,
-        light,
-        normal,
-        &Lift { rounding, offset },
-        f64::INFINITY,
-    );
+    let plane = raised_plane(map, light, normal, &Lift { rounding, offset });
     Moved {
         depth: plane.depth + map.depth_error,
         gradient: DVec2::ZERO,
@@ -236,22 +232,15 @@ struct Lift {
 }
 
 /// Returns the receiver on its tangent plane under a local light, after the plane has been moved.
-/// The receiver moves across the map by the tangents of the offset. Components of the gradient are
-/// at most `max_gradient`.
-fn raised_plane(
-    map: &Map<'_>,
-    light: DVec3,
-    normal: DVec3,
-    lift: &Lift,
-    max_gradient: f64,
-) -> Moved {
+/// The receiver moves across the map by the tangents of the offset.
+fn raised_plane(map: &Map<'_>, light: DVec3, normal: DVec3, lift: &Lift) -> Moved {
     let height = normal.dot(light);
     let moved = height - lift.rounding.copysign(height) + lift.offset;
     let shift = normal.truncate() * (lift.offset / -light.z) * map.texel_scale;
     let depth = map.depth(light);
     let (gradient, raised) = if moved.abs() > 0.0 {
         let gradient = normal.truncate() * map.texel_size * map.depth_scale / moved;
-        (limited(gradient, max_gradient), depth * height / moved)
+        (gradient, depth * height / moved)
     } else {
         (DVec2::ZERO, depth)
     };
@@ -281,7 +270,7 @@ fn manual(map: &Map<'_>, light: DVec3, normal: DVec3) -> Moved {
     moved
 }
 
-/// Returns a gradient whose components are at most `most`.
-fn limited(gradient: DVec2, most: f64) -> DVec2 {
-    gradient.clamp(DVec2::splat(-most), DVec2::splat(most))
+/// Returns a gradient whose components are finite.
+fn limited(gradient: DVec2) -> DVec2 {
+    gradient.clamp(DVec2::splat(-MAX_GRADIENT), DVec2::splat(MAX_GRADIENT))
 }
