@@ -61,8 +61,12 @@ pub(crate) const CASCADE_TINT: ShaderModule = module!(
 pub(crate) const GATHER_PROBE: ShaderModule =
     module!("gather_probe", "pass/gather_probe.wgsl", ["fullscreen"]);
 const TEXELS_BY_OFFSETS: ShaderModule = ShaderModule {
-    replaces: Some("texels"),
-    ..module!("texels_by_offsets", "texels_by_offsets.wgsl", ["view"])
+    replaces: Some("texel_blocks"),
+    ..module!(
+        "texels_by_offsets",
+        "texels_by_offsets.wgsl",
+        ["view", "texels"]
+    )
 };
 const TEXELS_BY_SAMPLES: ShaderModule = ShaderModule {
     replaces: Some("texels"),
@@ -86,6 +90,7 @@ pub const MODULES: &[ShaderModule] = &[
     ),
     module!("bias_manual", "bias_manual.wgsl", ["view", "place"]),
     module!("texels", "texels.wgsl", ["view"]),
+    module!("texel_blocks", "texel_blocks.wgsl", ["view", "texels"]),
     TEXELS_BY_OFFSETS,
     TEXELS_BY_SAMPLES,
     module!("gather", "gather.wgsl", ["view", "texels"]),
@@ -98,7 +103,7 @@ pub const MODULES: &[ShaderModule] = &[
     module!(
         "filter_box",
         "filter_box.wgsl",
-        ["view", "texels", "gather"]
+        ["view", "texels", "texel_blocks", "gather"]
     ),
     module!(
         "filter_bilinear",
@@ -108,17 +113,17 @@ pub const MODULES: &[ShaderModule] = &[
     module!(
         "filter_tent3",
         "filter_tent3.wgsl",
-        ["view", "texels", "gather"]
+        ["view", "texels", "texel_blocks", "gather"]
     ),
     module!(
         "filter_tent5",
         "filter_tent5.wgsl",
-        ["view", "texels", "gather"]
+        ["view", "texels", "texel_blocks", "gather"]
     ),
     module!(
         "filter_tent7",
         "filter_tent7.wgsl",
-        ["view", "texels", "gather"]
+        ["view", "texels", "texel_blocks", "gather"]
     ),
     module!(
         "filter_pcss",
@@ -144,11 +149,12 @@ pub const MODULES: &[ShaderModule] = &[
 ];
 
 /// Returns the texts of the named modules and of all modules that they require, each once, in the order of the table.
-/// A module that replaces another is included instead of the other; of two that replace the same one, the later in the
-/// table is.
+/// A module that replaces another is included instead of the other.
 ///
 /// # Errors
-/// Returns [`BindingsError::UnknownModule`] for a name that is not in [`MODULES`].
+/// Returns [`BindingsError::UnknownModule`] for a name that is not in [`MODULES`], and
+/// [`BindingsError::ConflictingModules`] for a module that goes with one that another of the names
+/// replaces: `texels_by_offsets` gathers, and `texels_by_samples` is for devices that cannot.
 pub fn compose(names: &[&str]) -> Result<String, BindingsError> {
     let mut wanted = [false; MODULES.len()];
     let mut open: Vec<&str> = names.to_vec();
@@ -170,14 +176,18 @@ pub fn compose(names: &[&str]) -> Result<String, BindingsError> {
             .filter(|(_, wanted)| *wanted)
             .map(|(module, _)| module)
     };
-    let is_replaced = |module: &ShaderModule| {
-        let name = module.replaces.unwrap_or(module.name);
-        let mut last_first = chosen().rev();
-        let last = last_first.find(|other| other.replaces == Some(name));
-        last.is_some_and(|last| last.name != module.name)
-    };
+    let replacement = |name| chosen().find(|other| other.replaces == Some(name));
+    for module in chosen().filter(|module| module.replaces.is_some()) {
+        let mut required = module.requires.iter();
+        if let Some(other) = required.find_map(|name| replacement(name)) {
+            return Err(BindingsError::ConflictingModules {
+                name: module.name,
+                other: other.name,
+            });
+        }
+    }
     Ok(chosen()
-        .filter(|module| !is_replaced(module))
+        .filter(|module| replacement(module.name).is_none())
         .map(|module| module.source)
         .collect())
 }

@@ -1,6 +1,6 @@
 // Applies the 3x3 percentage-closer filter of the tutorial at learnopengl.com: the mean of nearest
 // comparisons, one texel apart, with nine texels, in steps of a ninth, from four gathers. The reach
-// is one and a half texels. CPU reference: src/receive/reference. Requires: view, texels, gather.
+// is one and a half texels. CPU reference: src/receive/reference. Requires: view, texels, texel_blocks, gather.
 
 // Returns the visibility of the light, in [0, 1].
 fn shadow_filter_box(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver) -> f32 {

@@ -1,7 +1,7 @@
 // Applies the kernel [1 2 1] per axis to bilinear comparisons: 4x4 texels in four gathers. The
 // reach is two texels. The kernel is that of Castaño 2013, "Shadow Mapping Summary", here over raw
 // depths, so that every texel has a reference depth of its own. CPU reference:
-// src/receive/reference. Requires: view, texels, gather.
+// src/receive/reference. Requires: view, texels, texel_blocks, gather.
 //
 // The sum is written out, since naga limits the iterations of a loop, and compilers do not unroll
 // such a loop. It is taken two rows at a time, so that few depths are held at once: with more than

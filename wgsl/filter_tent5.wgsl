@@ -1,7 +1,7 @@
 // Applies the kernel [1 3 4 3 1] per axis to bilinear comparisons: 6x6 texels in nine gathers. The
 // reach is three texels. The kernel is that of Castaño 2013, "Shadow Mapping Summary", here over
 // raw depths, so that every texel has a reference depth of its own. CPU reference:
-// src/receive/reference. Requires: view, texels, gather.
+// src/receive/reference. Requires: view, texels, texel_blocks, gather.
 //
 // The sum is written out and taken two rows at a time, as in `filter_tent3`.
 

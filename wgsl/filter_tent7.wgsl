@@ -1,7 +1,7 @@
 // Applies the kernel [1 5 12 16 12 5 1] per axis to bilinear comparisons: 8x8 texels in sixteen
 // gathers. The reach is four texels. The kernel is that of Castaño 2013, "Shadow Mapping Summary",
 // here over raw depths, so that every texel has a reference depth of its own. CPU reference:
-// src/receive/reference. Requires: view, texels, gather.
+// src/receive/reference. Requires: view, texels, texel_blocks, gather.
 //
 // The sum is written out and taken two rows at a time, as in `filter_tent3`.
 

@@ -24,7 +24,8 @@ pub struct Composition {
 
 const STAGES: &str = include_str!("stages.wgsl");
 
-const BIASES: [Bias; 3] = [
+/// Lists the biases.
+pub const BIASES: [Bias; 3] = [
     Bias::Auto,
     Bias::NormalOffset,
     Bias::Manual {
@@ -45,13 +46,10 @@ const DIRECTIONS: [Filter; 2] = [
     Filter::DirectionStar { radius: 0.04 },
 ];
 
-/// Returns the filters of a kind of light. Their parameters do not change the shader.
-fn filters(kind: Kind) -> impl Iterator<Item = Filter> {
-    let directions = if kind.has_cube() {
-        &DIRECTIONS[..]
-    } else {
-        &[]
-    };
+/// Returns the filters of a kind of light, with those of point lights if it has a cube. Their
+/// parameters do not change the shader.
+pub fn filters(has_cube: bool) -> impl Iterator<Item = Filter> {
+    let directions = if has_cube { &DIRECTIONS[..] } else { &[] };
     let filters = Filter::PLANAR.iter().chain(&SOFT).chain(directions);
     filters.copied()
 }
@@ -99,7 +97,7 @@ pub fn lookup(name: &str, wgsl: String) -> Composition {
 pub fn lookups(gpu: &Gpu, kinds: &[Kind]) -> Result<Vec<Composition>, Box<dyn Error>> {
     let mut all = Vec::new();
     for &kind in kinds {
-        for filter in filters(kind) {
+        for filter in filters(kind.has_cube()) {
             for bias in BIASES {
                 let wgsl = kind::one_light(gpu, kind, (filter, bias))?;
                 all.push(lookup(&name(&kind.name(), filter, bias), wgsl));
@@ -112,7 +110,8 @@ pub fn lookups(gpu: &Gpu, kinds: &[Kind]) -> Result<Vec<Composition>, Box<dyn Er
 /// Returns lookups of two lights in one bind group: a sun and a point light, the latter with every
 /// filter and bias, and the former with another one each time.
 pub fn pairs(gpu: &Gpu) -> Result<Vec<Composition>, Box<dyn Error>> {
-    let samplings = |kind| filters(kind).flat_map(|filter| BIASES.map(|bias| (filter, bias)));
+    let samplings =
+        |kind: Kind| filters(kind.has_cube()).flat_map(|filter| BIASES.map(|bias| (filter, bias)));
     let sun = Kind::Sun(4);
     let point = Kind::Point { fade: 0.0 };
     let suns: Vec<_> = samplings(sun).collect();
@@ -193,8 +192,9 @@ impl Composition {
     pub fn without_offsets(&self) -> Self {
         let source = |name| MODULES.iter().find(|module| module.name == name);
         let mut lookup = self.clone();
-        if let (Some(offsets), Some(texels)) = (source("texels_by_offsets"), source("texels")) {
-            lookup.wgsl = lookup.wgsl.replace(offsets.source, texels.source);
+        if let (Some(offsets), Some(blocks)) = (source("texels_by_offsets"), source("texel_blocks"))
+        {
+            lookup.wgsl = lookup.wgsl.replace(offsets.source, blocks.source);
         }
         lookup
     }
@@ -206,18 +206,12 @@ impl Composition {
             return Some(self.clone());
         }
         let source = |name| MODULES.iter().find(|module| module.name == name);
-        let gathering = ["texels", "texels_by_offsets"]
-            .into_iter()
-            .filter_map(source);
-        let gathering = gathering.map(|module| module.source);
-        let gathering = gathering
-            .into_iter()
-            .find(|text| self.wgsl.contains(text))?;
-        let sampling = source("texels_by_samples")?.source;
-        if self.wgsl.contains(": sampler_comparison;") {
+        let [gathering, sampling] = ["texels", "texels_by_samples"].map(source);
+        let (gathering, sampling) = (gathering?.source, sampling?.source);
+        if !self.wgsl.contains(gathering) || self.wgsl.contains(": sampler_comparison;") {
             return None;
         }
-        let wgsl = self.wgsl.replace(gathering, sampling);
+        let wgsl = self.without_offsets().wgsl.replace(gathering, sampling);
         Some(Self {
             name: format!("{} by_samples", self.name),
             wgsl: wgsl.replace(": texture_depth_2d_array;", ": texture_2d_array<f32>;"),
