@@ -1,14 +1,17 @@
-//! Contains the WGSL as data: a table of plain modules without directives, what each of them requires, and their union.
+//! Contains the WGSL as data: a table of plain modules without directives, what each of them
+//! requires, and their union.
 //!
-//! All names begin with `shadow_`, `Shadow` or `SHADOW_`, so the texts can be concatenated with those of any engine, in
-//! any order, and be loaded unchanged as WESL or naga_oil modules. The sampling functions take texture, sampler and
-//! view as arguments. No module in [`MODULES`] declares a binding, except the caster modules and those of whole passes.
+//! All names begin with `shadow_`, `Shadow` or `SHADOW_`, so the texts can be concatenated with
+//! those of any engine, in any order, and be loaded unchanged as WESL or naga_oil modules. The
+//! sampling functions take texture, sampler and view as arguments. No module in [`MODULES`]
+//! declares a binding, except the caster modules and those of whole passes.
 //!
-//! An engine with its own bind groups composes `["bias_plane", "filter_tent3"]` and calls `shadow_filter_tent3(map,
-//! map_sampler, shadow_receiver_plane_directional(view, position, normal))`; `shadow_limited_by_depth(view, position, visibility)`
-//! then ends shadows at the cameras' `max_distance`. On devices whose shaders cannot gather (OpenGL ES 3.0, WebGL 2) it
-//! names `"texels_by_samples"` beside them and binds the maps as `texture_2d_array<f32>`. On every other backend than
-//! OpenGL it may name `"texels_by_offsets"`, which makes the filters cheaper.
+//! An engine with its own bind groups composes `["bias_plane", "filter_tent3"]` and calls
+//! `shadow_filter_tent3(map, map_sampler, shadow_receiver_plane_directional(view, position, normal))`;
+//! `shadow_limited_by_depth(view, position, visibility)` then ends shadows at the cameras'
+//! `max_distance`. On devices whose shaders cannot gather (OpenGL ES 3.0, WebGL 2) it names
+//! `"texels_by_samples"` beside them and binds the maps as `texture_2d_array<f32>`. On every other
+//! backend than OpenGL it may name `"texels_by_offsets"`, which makes the filters cheaper.
 
 use crate::error::BindingsError;
 
@@ -21,8 +24,8 @@ pub struct ShaderModule {
     pub source: &'static str,
     /// Lists the names of the modules whose declarations it uses.
     pub requires: &'static [&'static str],
-    /// Is the name of the module that it replaces in a composition that names it. Both make the same declarations, for
-    /// different devices.
+    /// Is the name of the module that it replaces in a composition that names it. Both make the
+    /// same declarations, for different devices.
     pub replaces: Option<&'static str>,
 }
 
@@ -148,8 +151,8 @@ pub const MODULES: &[ShaderModule] = &[
     GATHER_PROBE,
 ];
 
-/// Returns the texts of the named modules and of all modules that they require, each once, in the order of the table.
-/// A module that replaces another is included instead of the other.
+/// Returns the texts of the named modules and of all modules that they require, each once, in the
+/// order of the table. A module that replaces another is included instead of the other.
 ///
 /// # Errors
 /// Returns [`BindingsError::UnknownModule`] for a name that is not in [`MODULES`], and

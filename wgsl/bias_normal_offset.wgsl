@@ -17,7 +17,8 @@ fn shadow_receiver_normal_offset_directional(
     normal: vec3<f32>,
 ) -> ShadowReceiver {
     let place = shadow_place_directional(view, position);
-    return shadow_normal_offset_directional(view, view.mapping, place, shadow_light_from_render(view, normal));
+    let normal_light = shadow_light_from_render(view, normal);
+    return shadow_normal_offset_directional(view, view.mapping, place, normal_light);
 }
 
 // Returns the receiver at `position` in a view of a local light, moved along its geometric normal.
@@ -28,7 +29,8 @@ fn shadow_receiver_normal_offset_local(
     normal: vec3<f32>,
 ) -> ShadowReceiver {
     let place = shadow_place_local(view, position);
-    return shadow_normal_offset_local(view, view.mapping, place, shadow_light_from_render(view, normal));
+    let normal_light = shadow_light_from_render(view, normal);
+    return shadow_normal_offset_local(view, view.mapping, place, normal_light);
 }
 
 // Returns the receiver at a place of a directional light with a normal along the axes of light
@@ -37,12 +39,12 @@ fn shadow_normal_offset_directional(
     view: ShadowViewUniform,
     mapping: ShadowMapping,
     place: ShadowPlace,
-    normal: vec3<f32>,
+    normal_light: vec3<f32>,
 ) -> ShadowReceiver {
-    let across = abs(normal.xy) * mapping.texel_size;
+    let across = abs(normal_light.xy) * mapping.texel_size;
     let offset = view.offset_texels * (across.x + across.y) + mapping.rounding;
-    let texel = place.texel_from_middle + normal.xy * offset * mapping.texel_scale;
-    let depth = place.depth + (mapping.depth_scale * (normal.z * offset) + view.depth_error);
+    let texel = place.texel_from_middle + normal_light.xy * offset * mapping.texel_scale;
+    let depth = place.depth + (mapping.depth_scale * (normal_light.z * offset) + view.depth_error);
     return shadow_receiver(view, mapping, place, texel, depth, vec2<f32>(0.0));
 }
 
@@ -51,20 +53,20 @@ fn shadow_normal_offset_local(
     view: ShadowViewUniform,
     mapping: ShadowMapping,
     place: ShadowPlace,
-    normal: vec3<f32>,
+    normal_light: vec3<f32>,
 ) -> ShadowReceiver {
-    let height = dot(normal, place.light);
+    let height = dot(normal_light, place.position_light);
     let rounding = shadow_local_rounding(view, place, height);
-    let across = abs(normal.xy) * mapping.texel_size;
+    let across = abs(normal_light.xy) * mapping.texel_size;
     let per_w = view.offset_texels * (across.x + across.y);
     // This is the growth of w along the normal.
-    let growth = per_w * max(-normal.z, 0.0);
+    let growth = per_w * max(-normal_light.z, 0.0);
     // Up to one half, 1 / (1 - growth) is at most 1 + 2 growth.
-    let offset = per_w * -place.light.z * (1.0 + 2.0 * growth);
-    // Where the kernel reaches past the horizon of the surface, no offset prevents self-shadowing. Such a position is
-    // lit: its depth is set nearer than any in the map.
+    let offset = per_w * -place.position_light.z * (1.0 + 2.0 * growth);
+    // Where the kernel reaches past the horizon of the surface, no offset prevents self-shadowing.
+    // Such a position is lit: its depth is set nearer than any in the map.
     let hopeless = !((growth < 0.5) & (offset + rounding < abs(height)));
-    let plane = shadow_raised_plane(mapping, place, normal, height, rounding, offset);
+    let plane = shadow_raised_plane(mapping, place, normal_light, height, rounding, offset);
     let texel = place.texel_from_middle + select(plane.shift, vec2<f32>(0.0), hopeless);
     let depth = select(plane.depth + view.depth_error, 2.0, hopeless);
     return shadow_receiver(view, mapping, place, texel, depth, vec2<f32>(0.0));

@@ -12,7 +12,12 @@ alias ShadowMap = texture_2d_array<f32>;
 
 // Returns the four texels around `corner`, in texel coordinates: upper left, upper right, lower
 // left, lower right. Beyond the sides of the map they are those of the nearest texel inside.
-fn shadow_texels(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
+fn shadow_texels(
+    map: ShadowMap,
+    map_sampler: sampler,
+    receiver: ShadowReceiver,
+    corner: vec2<f32>,
+) -> vec4<f32> {
     let near = (corner - 0.5) * receiver.uv_per_texel;
     let far = (corner + 0.5) * receiver.uv_per_texel;
     return vec4<f32>(

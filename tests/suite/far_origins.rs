@@ -1,5 +1,5 @@
-//! Tests suns at origins of any finite magnitude: a frame is correct or is refused. Nothing is drawn with a
-//! matrix that is not finite, and no view is reported as empty that is not.
+//! Tests suns at origins of any finite magnitude: a frame is correct or is refused. Nothing is
+//! drawn with a matrix that is not finite, and no view is reported as empty that is not.
 
 use glam::{DVec3, Mat4, Vec3};
 use shadow_support::camera::Camera;

@@ -1,5 +1,5 @@
-//! Lists the shaders of the library as an engine compiles them: every lookup that it emits, with the
-//! stages of a pipeline around it, and the passes that it draws itself.
+//! Lists the shaders of the library as an engine compiles them: every lookup that it emits, with
+//! the stages of a pipeline around it, and the passes that it draws itself.
 
 mod kind;
 
@@ -92,8 +92,8 @@ pub fn lookup(name: &str, wgsl: String) -> Composition {
     }
 }
 
-/// Returns the lookup of a single light, for every kind of `kinds` with every filter and bias. `gpu`
-/// is any device that can gather.
+/// Returns the lookup of a single light, for every kind of `kinds` with every filter and bias.
+/// `gpu` is any device that can gather.
 pub fn lookups(gpu: &Gpu, kinds: &[Kind]) -> Result<Vec<Composition>, Box<dyn Error>> {
     let mut all = Vec::new();
     for &kind in kinds {
@@ -167,8 +167,8 @@ pub fn fullscreen_passes() -> Result<Vec<Composition>, Box<dyn Error>> {
     passes.into_iter().map(pass).collect()
 }
 
-/// Returns everything that the library emits on a device that can gather: the lookups of every kind of
-/// light and of two lights, the depth passes, and the passes over a whole viewport.
+/// Returns everything that the library emits on a device that can gather: the lookups of every kind
+/// of light and of two lights, the depth passes, and the passes over a whole viewport.
 pub fn all(gpu: &Gpu) -> Result<Vec<Composition>, Box<dyn Error>> {
     let mut all = lookups(gpu, &Kind::EVERY)?;
     all.extend(pairs(gpu)?);
@@ -199,8 +199,9 @@ impl Composition {
         lookup
     }
 
-    /// Returns the lookup as the library emits it on a device whose shaders cannot gather, or `None` for
-    /// one that compares some maps by the sampler and reads the texels of others, and for the probe.
+    /// Returns the lookup as the library emits it on a device whose shaders cannot gather, or
+    /// `None` for one that compares some maps by the sampler and reads the texels of others, and
+    /// for the probe.
     pub fn by_samples(&self) -> Option<Self> {
         if !self.gathers() {
             return Some(self.clone());
