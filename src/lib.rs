@@ -1,7 +1,9 @@
-//! Shadow mapping for engines that are built on [`wgpu`]: an engine passes in its lights, its camera and what casts shadows, and
-//! gets depth maps, a bind group, and WGSL functions that return visibility with a bias that needs no tuning.
+//! Shadow mapping for engines that are built on [`wgpu`]: an engine passes in its lights, its
+//! camera and what casts shadows, and gets depth maps, a bind group, and WGSL functions that return
+//! visibility with a bias that needs no tuning.
 //!
-//! The crate creates no device, submits nothing, and does not shade. It requires no optional device feature.
+//! The crate creates no device, submits nothing, and does not shade. It requires no optional device
+//! feature.
 //!
 //! # Usage
 //!
@@ -42,15 +44,17 @@
 //! }
 //! ```
 //!
-//! The engine puts [`ShadowBindings::wgsl`] in front of its own shader, [`ShadowBindings::layout`] into its pipeline layout at the
-//! index `group`, and sets [`ShadowBindings::bind_group`] there while it shades. Its fragment shader then calls
+//! The engine puts [`ShadowBindings::wgsl`] in front of its own shader, [`ShadowBindings::layout`]
+//! into its pipeline layout at the index `group`, and sets [`ShadowBindings::bind_group`] there
+//! while it shades. Its fragment shader then calls
 //!
 //! ```wgsl
 //! let normal = shadow_geometric_normal(position, camera_position - position);
 //! let visibility = shadow_sun(position, normal);
 //! ```
 //!
-//! What casts implements [`ShadowCaster`], or is a [`MeshCaster`]. `examples/quickstart.rs` in the repository is a complete program.
+//! What casts implements [`ShadowCaster`], or is a [`MeshCaster`]. `examples/quickstart.rs` in the
+//! repository is a complete program.
 //!
 //! # A frame
 //!
@@ -67,12 +71,13 @@
 //! your image       and a ShadowReport
 //! ```
 //!
-//! The lights themselves ([`DirectionalShadow`], [`SpotShadow`], [`OmniShadow`] and the pools) connect these stages.
-//! `ARCHITECTURE.md` in the repository follows a light's direction and a caster's bounds through them, file by file.
+//! The lights themselves ([`DirectionalShadow`], [`SpotShadow`], [`OmniShadow`] and the pools)
+//! connect these stages. `ARCHITECTURE.md` in the repository follows a light's direction and a
+//! caster's bounds through them, file by file.
 //!
-//! Everything is recorded into the engine's encoder in order: first the uniforms, then the depth passes. The encoder must be
-//! submitted before any work that samples the shadows. Several frames may be recorded before one submission; each of them shows its
-//! own state.
+//! Everything is recorded into the engine's encoder in order: first the uniforms, then the depth
+//! passes. The encoder must be submitted before any work that samples the shadows. Several frames
+//! may be recorded before one submission; each of them shows its own state.
 //!
 //! # Which light
 //!
@@ -83,62 +88,76 @@
 //! | a point light, or a spot light wider than [`SpotLight::WIDEST_SENSIBLE_OUTER_ANGLE`] | [`OmniShadow`] | six faces of a cube |
 //! | many spot or point lights, which come and go | [`pool::SpotShadowPool`], [`pool::OmniShadowPool`] | one or six for each slot, with a budget of views per frame |
 //!
-//! All lights of a frame are recorded with the same [`ShadowFrame`]. A sun over a scene as deep as it is wide needs one cascade; a
-//! view to the horizon needs three or four ([`DirectionalShadowDescriptor::cascades`], [`CascadeSplit`]), and under
-//! [`CascadeLayout::Automatic`] the library finds how many, where they end, and how many texels each gets.
-//! [`DirectionalShadowDescriptor::blend`] hides where one ends. [`ShadowMaps::report`] tells how fine the maps of the last frame are
-//! and what was drawn; [`debug::DebugView`] draws the maps.
+//! All lights of a frame are recorded with the same [`ShadowFrame`]. A sun over a scene as deep as
+//! it is wide needs one cascade; a view to the horizon needs three or four
+//! ([`DirectionalShadowDescriptor::cascades`], [`CascadeSplit`]), and under
+//! [`CascadeLayout::Automatic`] the library finds how many, where they end, and how many texels
+//! each gets. [`DirectionalShadowDescriptor::blend`] hides where one ends. [`ShadowMaps::report`]
+//! tells how fine the maps of the last frame are and what was drawn; [`debug::DebugView`] draws the
+//! maps.
 //!
 //! # Which filter and bias
 //!
 //! The defaults, [`Filter::Tent3`] with a sharpness of 3 and [`Bias::Auto`], suit most scenes.
-//! [`DirectionalShadowDescriptor::CHEAP`] and [`DirectionalShadowDescriptor::ACCURATE`] trade error for cost.
-//! [`Filter::Pcss`] renders the penumbrae of a light of a given size. [`Filter`] lists the cost and the reach of each filter, and
-//! `cargo run --release --example tune -- FILE.glb` measures them in a scene of your own.
+//! [`DirectionalShadowDescriptor::CHEAP`] and [`DirectionalShadowDescriptor::ACCURATE`] trade error
+//! for cost. [`Filter::Pcss`] renders the penumbrae of a light of a given size. [`Filter`] lists
+//! the cost and the reach of each filter, and `cargo run --release --example tune -- FILE.glb`
+//! measures them in a scene of your own.
 //!
-//! [`Bias::Auto`] has nothing to tune. Over a plane, ndc depth is affine in map coordinates, for orthographic and perspective views
-//! alike, so the shader transforms the receiver's tangent plane to texel space, gathers raw depths, and compares each of them with
-//! the depth of the plane at that texel, clamped so that it never lies farther from the light than the receiver. What remains is an
-//! offset for rounding, and one of a tenth of a texel. [`Bias::NormalOffset`] and [`Bias::Manual`] are the usual
-//! methods, for comparison and for engines whose images must not change.
+//! [`Bias::Auto`] has nothing to tune. Over a plane, ndc depth is affine in map coordinates, for
+//! orthographic and perspective views alike, so the shader transforms the receiver's tangent plane
+//! to texel space, gathers raw depths, and compares each of them with the depth of the plane at
+//! that texel, clamped so that it never lies farther from the light than the receiver. What remains
+//! is an offset for rounding, and one of a tenth of a texel. [`Bias::NormalOffset`] and
+//! [`Bias::Manual`] are the usual methods, for comparison and for engines whose images must not
+//! change.
 //!
 //! The normal must be the geometric one, of unit length, on the side that is shaded;
-//! `shadow_geometric_normal(position, toward_viewer)` computes it from screen-space derivatives. `toward_viewer` selects the side.
-//! Derivatives alone cannot, since a projection that mirrors (a planar reflection, a target whose y points down, a captured cube map)
-//! reverses them. It is any vector from the surface to the side that is looked at, of any length but zero:
-//! `camera_position - position` for a perspective camera, the reverse of the view direction for an orthographic one. An interpolated
-//! shading normal also works, but fails at silhouettes, where it points behind the facet. A normal on the wrong side pushes receivers
-//! into their own surface, which shows as acne everywhere.
+//! `shadow_geometric_normal(position, toward_viewer)` computes it from screen-space derivatives.
+//! `toward_viewer` selects the side. Derivatives alone cannot, since a projection that mirrors (a
+//! planar reflection, a target whose y points down, a captured cube map) reverses them. It is any
+//! vector from the surface to the side that is looked at, of any length but zero:
+//! `camera_position - position` for a perspective camera, the reverse of the view direction for an
+//! orthographic one. An interpolated shading normal also works, but fails at silhouettes, where it
+//! points behind the facet. A normal on the wrong side pushes receivers into their own surface,
+//! which shows as acne everywhere.
 //!
-//! Derivatives of rounded positions are rounded: at coordinate `P` and distance `d` from the camera, in an image of 1000 pixels a
-//! radian, that normal errs by up to `5·10⁻⁴ P / d` radians. From some `P` = 100 `d` on, let
-//! [`ShadowFrameDescriptor::origin`] follow the camera, or pass a normal that the mesh has for its triangles.
+//! Derivatives of rounded positions are rounded: at coordinate `P` and distance `d` from the
+//! camera, in an image of 1000 pixels a radian, that normal errs by up to `5·10⁻⁴ P / d` radians.
+//! From some `P` = 100 `d` on, let [`ShadowFrameDescriptor::origin`] follow the camera, or pass a
+//! normal that the mesh has for its triangles.
 //!
 //! # What a kept map relies on
 //!
-//! A view keeps its map while its light, its fit and its casters do not change. A light knows what it has recorded, but not what the
-//! device has executed. A kept map is therefore stale where
+//! A view keeps its map while its light, its fit and its casters do not change. A light knows what
+//! it has recorded, but not what the device has executed. A kept map is therefore stale where
 //!
-//! - an encoder was dropped, or its `finish` failed because some command in it was invalid, a caster's own commands included;
+//! - an encoder was dropped, or its `finish` failed because some command in it was invalid, a
+//!   caster's own commands included;
 //! - encoders were submitted in another order than they were recorded in;
-//! - the encoder belongs to another device than the light (wgpu reports this only when the encoder is finished);
+//! - the encoder belongs to another device than the light (wgpu reports this only when the encoder
+//!   is finished);
 //! - other code wrote to the texture or to the uniform buffer;
 //! - a caster's [`Revision`] stayed the same while what it draws changed.
 //!
-//! After any of these but the last, call the light's `invalidate`: the next frame then draws everything. A caster that panics while
-//! it draws needs no such call; the layer that it was being drawn into is drawn again in the next frame.
+//! After any of these but the last, call the light's `invalidate`: the next frame then draws
+//! everything. A caster that panics while it draws needs no such call; the layer that it was being
+//! drawn into is drawn again in the next frame.
 //!
-//! The engine's `origin` may move without a new revision. A kept map then carries the rounding of the render coordinates from which
-//! it was drawn, and the bias allows for that rounding. The map is drawn again where the rounding exceeds both twice that of a new
-//! map and 1/64 of a texel.
+//! The engine's `origin` may move without a new revision. A kept map then carries the rounding of
+//! the render coordinates from which it was drawn, and the bias allows for that rounding. The map
+//! is drawn again where the rounding exceeds both twice that of a new map and 1/64 of a texel.
 //!
-//! [`troubleshooting`] tells what faults look like, what causes them and what to do. [`hard_cases`] lists scenes and inputs that break shadow maps, with what the crate promises for each and what was measured.
+//! [`troubleshooting`] tells what faults look like, what causes them and what to do. [`hard_cases`]
+//! lists scenes and inputs that break shadow maps, with what the crate promises for each and what
+//! was measured.
 //!
 //! # Own bind groups
 //!
-//! An engine that has no index left for [`ShadowBindings`] binds [`ShadowMaps::texture_view`] and [`ShadowMaps::uniform_buffer`]
-//! in a group of its own. [`shader::compose`] returns the WGSL of the modules that it names and of all that they require, and their
-//! functions take texture, sampler and view as arguments:
+//! An engine that has no index left for [`ShadowBindings`] binds [`ShadowMaps::texture_view`] and
+//! [`ShadowMaps::uniform_buffer`] in a group of its own. [`shader::compose`] returns the WGSL of
+//! the modules that it names and of all that they require, and their functions take texture,
+//! sampler and view as arguments:
 //!
 //! ```
 //! let wgsl = wgpu_shadows::shader::compose(&["bias_plane", "filter_tent3"])?;
@@ -181,33 +200,38 @@
 //! | clip, ndc | as WebGPU defines it: z in \[0, 1\], y up; depth is reversed: near 1, far 0 | f32 |
 //! | texel | origin at the top left, texel centres at halves | f32 |
 //!
-//! An engine that renders relative to its camera sets [`ShadowFrameDescriptor::origin`] to the world position that is zero in its
-//! shaders. The matrices of a [`CameraView`], the bounds of casters and receivers, and the positions that shaders pass in are in
-//! render space; the positions of lights are in world space. A map is kept while the origin moves.
+//! An engine that renders relative to its camera sets [`ShadowFrameDescriptor::origin`] to the
+//! world position that is zero in its shaders. The matrices of a [`CameraView`], the bounds of
+//! casters and receivers, and the positions that shaders pass in are in render space; the positions
+//! of lights are in world space. A map is kept while the origin moves.
 //!
-//! Without an origin, f32 coordinates far from zero bring their own rounding into the shadows: shadows of a scene at distance `P`
-//! are displaced by up to `P` / 2 000 000 (half a millimetre at 1 km, five centimetres at 100 km), and the bias grows by as much.
+//! Without an origin, f32 coordinates far from zero bring their own rounding into the shadows:
+//! shadows of a scene at distance `P` are displaced by up to `P` / 2 000 000 (half a millimetre at
+//! 1 km, five centimetres at 100 km), and the bias grows by as much.
 //!
 //! Matrices are named `target_from_source`; scalars carry their unit in their name.
 //!
 //! # What is promised under semver
 //!
-//! Everything public follows semantic versioning, with [`wgpu`] and [`glam`] as part of the interface: a new major version of either
-//! is a breaking change here. The same holds for these names of the WGSL, with their parameters and their meaning:
+//! Everything public follows semantic versioning, with [`wgpu`] and [`glam`] as part of the
+//! interface: a new major version of either is a breaking change here. The same holds for these
+//! names of the WGSL, with their parameters and their meaning:
 //!
-//! - of [`ShadowBindings::wgsl`]: `shadow_NAME`, `shadow_view_NAME`, `shadow_map_NAME` and `shadow_views_NAME` for each light, and
-//!   `shadow_geometric_normal`;
-//! - of [`shader::MODULES`]: the names of the modules `view`, `cube_face`, `normal`, `texels_by_offsets`, `texels_by_samples`, `bias_*`, and `filter_*`
-//!   except `filter_direction`; of their functions `shadow_view_holds`, `shadow_limited_by_depth`,
+//! - of [`ShadowBindings::wgsl`]: `shadow_NAME`, `shadow_view_NAME`, `shadow_map_NAME` and
+//!   `shadow_views_NAME` for each light, and `shadow_geometric_normal`;
+//! - of [`shader::MODULES`]: the names of the modules `view`, `cube_face`, `normal`,
+//!   `texels_by_offsets`, `texels_by_samples`, `bias_*`, and `filter_*` except `filter_direction`;
+//!   of their functions `shadow_view_holds`, `shadow_limited_by_depth`,
 //!   `shadow_limited_by_distance`, `shadow_cube_face`, `shadow_geometric_normal`,
-//!   `shadow_receiver_NAME_directional` and `shadow_receiver_NAME_local` of a module `bias_NAME`, and
-//!   `shadow_filter_NAME` of a module `filter_NAME`; and of their structs
-//!   `ShadowReceiver` with the member `inside` and `ShadowViewUniform` with the member `anchor`;
+//!   `shadow_receiver_NAME_directional` and `shadow_receiver_NAME_local` of a module `bias_NAME`,
+//!   and `shadow_filter_NAME` of a module `filter_NAME`; and of their structs `ShadowReceiver` with
+//!   the member `inside` and `ShadowViewUniform` with the member `anchor`;
 //! - in the text of a [`caster::CasterVertex::Wgsl`]: `shadow_caster_clip`.
 //!
-//! All names that the WGSL declares begin with `shadow_`, `Shadow` or `SHADOW_`, so an engine's own names are safe if they do not.
-//! Everything else in the WGSL may change with any version: texts, other names, other members, the size and the layout of
-//! [`ShadowViewUniform`], and the numbers of bindings. So may the last digits of a visibility.
+//! All names that the WGSL declares begin with `shadow_`, `Shadow` or `SHADOW_`, so an engine's own
+//! names are safe if they do not. Everything else in the WGSL may change with any version: texts,
+//! other names, other members, the size and the layout of [`ShadowViewUniform`], and the numbers of
+//! bindings. So may the last digits of a visibility.
 
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
@@ -239,7 +263,8 @@ pub use receive::{
 };
 pub use {glam, wgpu};
 
-/// Contains what casters are made of: the layout and shading of their vertices, and a ready-made mesh.
+/// Contains what casters are made of: the layout and shading of their vertices, and a ready-made
+/// mesh.
 pub mod caster {
     pub use crate::cast::{
         CasterPipelineDescriptor, CasterVertex, MeshCasterDescriptor, MeshIndices, ModelTransform,

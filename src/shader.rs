@@ -1,14 +1,17 @@
-//! Contains the WGSL as data: a table of plain modules without directives, what each of them requires, and their union.
+//! Contains the WGSL as data: a table of plain modules without directives, what each of them
+//! requires, and their union.
 //!
-//! All names begin with `shadow_`, `Shadow` or `SHADOW_`, so the texts can be concatenated with those of any engine, in
-//! any order, and be loaded unchanged as WESL or naga_oil modules. The sampling functions take texture, sampler and
-//! view as arguments. No module in [`MODULES`] declares a binding, except the caster modules and those of whole passes.
+//! All names begin with `shadow_`, `Shadow` or `SHADOW_`, so the texts can be concatenated with
+//! those of any engine, in any order, and be loaded unchanged as WESL or naga_oil modules. The
+//! sampling functions take texture, sampler and view as arguments. No module in [`MODULES`]
+//! declares a binding, except the caster modules and those of whole passes.
 //!
-//! An engine with its own bind groups composes `["bias_plane", "filter_tent3"]` and calls `shadow_filter_tent3(map,
-//! map_sampler, shadow_receiver_plane_directional(view, position, normal))`; `shadow_limited_by_depth(view, position, visibility)`
-//! then ends shadows at the cameras' `max_distance`. On devices whose shaders cannot gather (OpenGL ES 3.0, WebGL 2) it
-//! names `"texels_by_samples"` beside them and binds the maps as `texture_2d_array<f32>`. On every other backend than
-//! OpenGL it may name `"texels_by_offsets"`, which makes the filters cheaper.
+//! An engine with its own bind groups composes `["bias_plane", "filter_tent3"]` and calls
+//! `shadow_filter_tent3(map, map_sampler, shadow_receiver_plane_directional(view, position, normal))`;
+//! `shadow_limited_by_depth(view, position, visibility)` then ends shadows at the cameras'
+//! `max_distance`. On devices whose shaders cannot gather (OpenGL ES 3.0, WebGL 2) it names
+//! `"texels_by_samples"` beside them and binds the maps as `texture_2d_array<f32>`. On every other
+//! backend than OpenGL it may name `"texels_by_offsets"`, which makes the filters cheaper.
 
 use crate::error::BindingsError;
 
@@ -21,8 +24,8 @@ pub struct ShaderModule {
     pub source: &'static str,
     /// Lists the names of the modules whose declarations it uses.
     pub requires: &'static [&'static str],
-    /// Is the name of the module that it replaces in a composition that names it. Both make the same declarations, for
-    /// different devices.
+    /// Is the name of the module that it replaces in a composition that names it. Both make the
+    /// same declarations, for different devices.
     pub replaces: Option<&'static str>,
 }
 
@@ -62,8 +65,12 @@ pub(crate) const CASCADE_TINT: ShaderModule = module!(
 pub(crate) const GATHER_PROBE: ShaderModule =
     module!("gather_probe", "pass/gather_probe.wgsl", ["fullscreen"]);
 const TEXELS_BY_OFFSETS: ShaderModule = ShaderModule {
-    replaces: Some("texels"),
-    ..module!("texels_by_offsets", "texels_by_offsets.wgsl", ["view"])
+    replaces: Some("texel_blocks"),
+    ..module!(
+        "texels_by_offsets",
+        "texels_by_offsets.wgsl",
+        ["view", "texels"]
+    )
 };
 const TEXELS_BY_SAMPLES: ShaderModule = ShaderModule {
     replaces: Some("texels"),
@@ -74,19 +81,20 @@ const TEXELS_BY_SAMPLES: ShaderModule = ShaderModule {
 pub const MODULES: &[ShaderModule] = &[
     module!("view", "view.wgsl", []),
     module!("place", "place.wgsl", ["view"]),
-    module!("rounding", "rounding.wgsl", ["view", "place"]),
+    module!("raised_plane", "raised_plane.wgsl", ["view", "place"]),
     module!(
         "bias_plane",
         "bias_plane.wgsl",
-        ["view", "place", "rounding"]
+        ["view", "place", "raised_plane"]
     ),
     module!(
         "bias_normal_offset",
         "bias_normal_offset.wgsl",
-        ["view", "place", "rounding"]
+        ["view", "place", "raised_plane"]
     ),
     module!("bias_manual", "bias_manual.wgsl", ["view", "place"]),
     module!("texels", "texels.wgsl", ["view"]),
+    module!("texel_blocks", "texel_blocks.wgsl", ["view", "texels"]),
     TEXELS_BY_OFFSETS,
     TEXELS_BY_SAMPLES,
     module!("gather", "gather.wgsl", ["view", "texels"]),
@@ -99,7 +107,7 @@ pub const MODULES: &[ShaderModule] = &[
     module!(
         "filter_box",
         "filter_box.wgsl",
-        ["view", "texels", "gather"]
+        ["view", "texels", "texel_blocks", "gather"]
     ),
     module!(
         "filter_bilinear",
@@ -109,17 +117,17 @@ pub const MODULES: &[ShaderModule] = &[
     module!(
         "filter_tent3",
         "filter_tent3.wgsl",
-        ["view", "texels", "gather"]
+        ["view", "texels", "texel_blocks", "gather"]
     ),
     module!(
         "filter_tent5",
         "filter_tent5.wgsl",
-        ["view", "texels", "gather"]
+        ["view", "texels", "texel_blocks", "gather"]
     ),
     module!(
         "filter_tent7",
         "filter_tent7.wgsl",
-        ["view", "texels", "gather"]
+        ["view", "texels", "texel_blocks", "gather"]
     ),
     module!(
         "filter_pcss",
@@ -144,12 +152,13 @@ pub const MODULES: &[ShaderModule] = &[
     GATHER_PROBE,
 ];
 
-/// Returns the texts of the named modules and of all modules that they require, each once, in the order of the table.
-/// A module that replaces another is included instead of the other; of two that replace the same one, the later in the
-/// table is.
+/// Returns the texts of the named modules and of all modules that they require, each once, in the
+/// order of the table. A module that replaces another is included instead of the other.
 ///
 /// # Errors
-/// Returns [`BindingsError::UnknownModule`] for a name that is not in [`MODULES`].
+/// Returns [`BindingsError::UnknownModule`] for a name that is not in [`MODULES`], and
+/// [`BindingsError::ConflictingModules`] for a module that goes with one that another of the names
+/// replaces: `texels_by_offsets` gathers, and `texels_by_samples` is for devices that cannot.
 pub fn compose(names: &[&str]) -> Result<String, BindingsError> {
     let mut wanted = [false; MODULES.len()];
     let mut open: Vec<&str> = names.to_vec();
@@ -171,14 +180,18 @@ pub fn compose(names: &[&str]) -> Result<String, BindingsError> {
             .filter(|(_, wanted)| *wanted)
             .map(|(module, _)| module)
     };
-    let is_replaced = |module: &ShaderModule| {
-        let name = module.replaces.unwrap_or(module.name);
-        let mut last_first = chosen().rev();
-        let last = last_first.find(|other| other.replaces == Some(name));
-        last.is_some_and(|last| last.name != module.name)
-    };
+    let replacement = |name| chosen().find(|other| other.replaces == Some(name));
+    for module in chosen().filter(|module| module.replaces.is_some()) {
+        let mut required = module.requires.iter();
+        if let Some(other) = required.find_map(|name| replacement(name)) {
+            return Err(BindingsError::ConflictingModules {
+                name: module.name,
+                other: other.name,
+            });
+        }
+    }
     Ok(chosen()
-        .filter(|module| !is_replaced(module))
+        .filter(|module| replacement(module.name).is_none())
         .map(|module| module.source)
         .collect())
 }

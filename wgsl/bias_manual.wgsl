@@ -11,7 +11,8 @@ fn shadow_receiver_manual_directional(
     normal: vec3<f32>,
 ) -> ShadowReceiver {
     let place = shadow_place_directional(view, position);
-    return shadow_manual_directional(view, view.mapping, place, shadow_light_from_render(view, normal));
+    let normal_light = shadow_light_from_render(view, normal);
+    return shadow_manual_directional(view, view.mapping, place, normal_light);
 }
 
 // Returns the receiver at `position` in a view of a local light, moved toward the light by the
@@ -22,7 +23,8 @@ fn shadow_receiver_manual_local(
     normal: vec3<f32>,
 ) -> ShadowReceiver {
     let place = shadow_place_local(view, position);
-    return shadow_manual_local(view, view.mapping, place, shadow_light_from_render(view, normal));
+    let normal_light = shadow_light_from_render(view, normal);
+    return shadow_manual_local(view, view.mapping, place, normal_light);
 }
 
 // Returns the receiver at a place of a directional light with a normal along the axes of light
@@ -31,9 +33,9 @@ fn shadow_manual_directional(
     view: ShadowViewUniform,
     mapping: ShadowMapping,
     place: ShadowPlace,
-    normal: vec3<f32>,
+    normal_light: vec3<f32>,
 ) -> ShadowReceiver {
-    let toward = max(view.manual_slope * (1.0 - normal.z), view.manual_constant);
+    let toward = max(view.manual_slope * (1.0 - normal_light.z), view.manual_constant);
     let depth = place.depth + mapping.depth_scale * toward;
     return shadow_receiver(view, mapping, place, place.texel_from_middle, depth, vec2<f32>(0.0));
 }
@@ -44,10 +46,10 @@ fn shadow_manual_local(
     view: ShadowViewUniform,
     mapping: ShadowMapping,
     place: ShadowPlace,
-    normal: vec3<f32>,
+    normal_light: vec3<f32>,
 ) -> ShadowReceiver {
-    let per_distance = inverseSqrt(dot(place.light, place.light));
-    let facing = -dot(normal, place.light) * per_distance;
+    let per_distance = inverseSqrt(dot(place.position_light, place.position_light));
+    let facing = -dot(normal_light, place.position_light) * per_distance;
     let toward = max(view.manual_slope * (1.0 - facing), view.manual_constant);
     let left = 1.0 - toward * per_distance;
     let depth = select(2.0, place.depth / left, left > 0.0);

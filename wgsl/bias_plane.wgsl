@@ -8,7 +8,7 @@
 // along the plane and `depth_error` in depth; facets finer than a texel are covered by an offset of
 // `offset_texels` along the normal.
 //
-// CPU reference: src/receive/reference. Requires: view, place, rounding.
+// CPU reference: src/receive/reference. Requires: view, place, raised_plane.
 
 // Is the steepest gradient, in depth per texel. Steeper planes cross the whole depth range within a
 // fraction of a texel; the limit excludes infinity.
@@ -22,7 +22,8 @@ fn shadow_receiver_plane_directional(
     normal: vec3<f32>,
 ) -> ShadowReceiver {
     let place = shadow_place_directional(view, position);
-    return shadow_plane_directional(view, view.mapping, place, shadow_light_from_render(view, normal));
+    let normal_light = shadow_light_from_render(view, normal);
+    return shadow_plane_directional(view, view.mapping, place, normal_light);
 }
 
 // Returns the receiver at `position` in a view of a local light, with the gradient of its tangent
@@ -33,7 +34,8 @@ fn shadow_receiver_plane_local(
     normal: vec3<f32>,
 ) -> ShadowReceiver {
     let place = shadow_place_local(view, position);
-    return shadow_plane_local(view, view.mapping, place, shadow_light_from_render(view, normal));
+    let normal_light = shadow_light_from_render(view, normal);
+    return shadow_plane_local(view, view.mapping, place, normal_light);
 }
 
 // Returns the receiver at a place of a directional light with a normal along the axes of light
@@ -45,54 +47,47 @@ fn shadow_plane_directional(
     view: ShadowViewUniform,
     mapping: ShadowMapping,
     place: ShadowPlace,
-    normal: vec3<f32>,
+    normal_light: vec3<f32>,
 ) -> ShadowReceiver {
     // Is the rise of the plane per texel, times nz.
-    let rise = normal.xy * mapping.texel_size;
+    let rise = normal_light.xy * mapping.texel_size;
     let offset = view.offset_texels * (abs(rise.x) + abs(rise.y)) + mapping.rounding;
     // A plane that is seen edge-on has no gradient, nor does one whose normal is zero.
-    let per_rise = select(0.0, -mapping.depth_scale / normal.z, abs(normal.z) > 0.0);
+    let per_rise = select(0.0, -mapping.depth_scale / normal_light.z, abs(normal_light.z) > 0.0);
     let gradient = shadow_limited_gradient(rise * per_rise);
-    let texel = place.texel_from_middle + normal.xy * offset * mapping.texel_scale;
-    let depth = place.depth + mapping.depth_scale * (normal.z * offset);
-    return shadow_receiver(view, mapping, place, texel, depth + shadow_slack(view, gradient), gradient);
+    let texel = place.texel_from_middle + normal_light.xy * offset * mapping.texel_scale;
+    let depth = place.depth + mapping.depth_scale * (normal_light.z * offset);
+    let raised = depth + shadow_slack(view, gradient);
+    return shadow_receiver(view, mapping, place, texel, raised, gradient);
 }
 
 // Returns the receiver at a place of a local light with a normal along the axes of light space.
-//
-// With h = n · p, the position being relative to the light, the plane meets the direction of
-// tangents (x, y) where near / w = near (nx x + ny y - nz) / h. Moving the plane along its normal
-// only changes h. The receiver is moved across the map by the tangents of the same offset, and its
-// depth is that of the moved plane there.
 fn shadow_plane_local(
     view: ShadowViewUniform,
     mapping: ShadowMapping,
     place: ShadowPlace,
-    normal: vec3<f32>,
+    normal_light: vec3<f32>,
 ) -> ShadowReceiver {
-    let height = dot(normal, place.light);
+    let height = dot(normal_light, place.position_light);
     let rounding = shadow_local_rounding(view, place, height);
-    let rise = normal.xy * mapping.texel_size;
-    let wanted = view.offset_texels * -place.light.z * (abs(rise.x) + abs(rise.y));
+    let across = abs(normal_light.xy) * mapping.texel_size;
+    let wanted = view.offset_texels * -place.position_light.z * (across.x + across.y);
     // The offset never reaches past the light: under the widest cones a texel is larger than the
     // light's height above the surface.
     let offset = min(wanted, 0.5 * (abs(height) - rounding));
-    let moved = height + select(-rounding, rounding, height < 0.0) + offset;
-    // A plane through the light has no gradient, nor does one whose normal is zero.
-    let inverse_height = select(0.0, 1.0 / moved, abs(moved) > 0.0);
-    let gradient = shadow_limited_gradient(rise * (mapping.depth_scale * inverse_height));
-    let shift = normal.xy * (offset * place.inverse_w) * mapping.texel_scale;
-    let raised = place.depth * ((height - moved) * inverse_height + mapping.rounding);
-    let depth = place.depth + (raised + (dot(gradient, shift) + shadow_slack(view, gradient)));
-    return shadow_receiver(view, mapping, place, place.texel_from_middle + shift, depth, gradient);
-}
-
-// Returns a gradient whose components are finite.
-fn shadow_limited_gradient(gradient: vec2<f32>) -> vec2<f32> {
-    return clamp(gradient, vec2<f32>(-SHADOW_MAX_GRADIENT), vec2<f32>(SHADOW_MAX_GRADIENT));
+    let plane = shadow_raised_plane(mapping, place, normal_light, height, rounding, offset);
+    let texel = place.texel_from_middle + plane.shift;
+    let gradient = shadow_limited_gradient(plane.gradient);
+    let depth = plane.depth + shadow_slack(view, gradient);
+    return shadow_receiver(view, mapping, place, texel, depth, gradient);
 }
 
 // Returns the depth by which the plane's own depths are raised, for rounding.
 fn shadow_slack(view: ShadowViewUniform, gradient: vec2<f32>) -> f32 {
     return view.lateral_error * (abs(gradient.x) + abs(gradient.y)) + view.depth_error;
+}
+
+// Returns a gradient whose components are finite.
+fn shadow_limited_gradient(gradient: vec2<f32>) -> vec2<f32> {
+    return clamp(gradient, vec2<f32>(-SHADOW_MAX_GRADIENT), vec2<f32>(SHADOW_MAX_GRADIENT));
 }

@@ -7,6 +7,7 @@ fn shadow_filter_bilinear(map: ShadowMap, map_sampler: sampler, receiver: Shadow
     let s = kernel.fraction;
     let depths = shadow_texels(map, map_sampler, receiver, kernel.base + 1.0);
     let rows = shadow_kernel_rows(receiver, kernel, 0.0);
-    let lit = shadow_lit_rows(receiver, rows, 0.0, vec2<f32>(1.0 - s.x, s.x), depths, vec2<f32>(0.0));
+    let columns = vec2<f32>(1.0 - s.x, s.x);
+    let lit = shadow_lit_rows(receiver, rows, 0.0, columns, depths, vec2<f32>(0.0));
     return shadow_ramped(receiver, mix(lit.x, lit.y, s.y));
 }

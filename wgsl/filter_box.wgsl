@@ -1,12 +1,14 @@
 // Applies the 3x3 percentage-closer filter of the tutorial at learnopengl.com: the mean of nearest
 // comparisons, one texel apart, with nine texels, in steps of a ninth, from four gathers. The reach
-// is one and a half texels. CPU reference: src/receive/reference. Requires: view, texels, gather.
+// is one and a half texels. CPU reference: src/receive/reference. Requires: view, texels,
+// texel_blocks, gather.
 
 // Returns the visibility of the light, in [0, 1].
 fn shadow_filter_box(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver) -> f32 {
     let base = floor(receiver.texel);
     let from_center = receiver.texel - 0.5 - base;
-    let kernel = ShadowKernel(base, from_center, receiver.depth - dot(receiver.gradient, from_center));
+    let depth = receiver.depth - dot(receiver.gradient, from_center);
+    let kernel = ShadowKernel(base, from_center, depth);
     let upper = shadow_box_rows(map, map_sampler, receiver, kernel, -1.0);
     let lower = shadow_box_rows(map, map_sampler, receiver, kernel, 1.0);
     return shadow_ramped(receiver, upper.x + upper.y + lower.x);

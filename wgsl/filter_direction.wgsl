@@ -47,7 +47,11 @@ fn shadow_direction_grid_radius(view: ShadowViewUniform, position: vec3<f32>) ->
 // Returns the point, relative to the light, at which the sample along `from_light + offset` meets
 // the receiver's plane, moved toward the light to the receiver's distance where it lies farther
 // away.
-fn shadow_direction_on_plane(from_light: vec3<f32>, normal: vec3<f32>, offset: vec3<f32>) -> vec3<f32> {
+fn shadow_direction_on_plane(
+    from_light: vec3<f32>,
+    normal: vec3<f32>,
+    offset: vec3<f32>,
+) -> vec3<f32> {
     let direction = normalize(from_light + offset);
     let reach = length(from_light);
     let hit = dot(normal, from_light) / dot(normal, direction);

@@ -101,7 +101,8 @@ fn shadow_penumbra(
     }
     var lit = 0.0;
     for (var i = 0u; i < SHADOW_PENUMBRA_FILTER_TAPS; i++) {
-        let from_centers = receiver.texel + (turn * shadow_disk(i, SHADOW_PENUMBRA_FILTER_TAPS)) * radius - 0.5;
+        let offset = turn * shadow_disk(i, SHADOW_PENUMBRA_FILTER_TAPS);
+        let from_centers = receiver.texel + offset * radius - 0.5;
         let first = floor(from_centers);
         let s = from_centers - first;
         let block = shadow_gather(map, map_sampler, receiver, first);

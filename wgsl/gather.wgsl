@@ -76,6 +76,7 @@ fn shadow_gather(
     receiver: ShadowReceiver,
     first: vec2<f32>,
 ) -> vec4<f32> {
-    let lit = shadow_references(receiver, first) >= shadow_texels(map, map_sampler, receiver, first + 1.0);
+    let depths = shadow_texels(map, map_sampler, receiver, first + 1.0);
+    let lit = shadow_references(receiver, first) >= depths;
     return select(vec4<f32>(0.0), vec4<f32>(1.0), lit);
 }

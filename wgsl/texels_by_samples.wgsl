@@ -12,7 +12,12 @@ alias ShadowMap = texture_2d_array<f32>;
 
 // Returns the four texels around `corner`, in texel coordinates: upper left, upper right, lower
 // left, lower right. Beyond the sides of the map they are those of the nearest texel inside.
-fn shadow_texels(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
+fn shadow_texels(
+    map: ShadowMap,
+    map_sampler: sampler,
+    receiver: ShadowReceiver,
+    corner: vec2<f32>,
+) -> vec4<f32> {
     let near = (corner - 0.5) * receiver.uv_per_texel;
     let far = (corner + 0.5) * receiver.uv_per_texel;
     return vec4<f32>(
@@ -21,52 +26,4 @@ fn shadow_texels(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver,
         textureSampleLevel(map, map_sampler, vec2<f32>(near.x, far.y), receiver.layer, 0.0).x,
         textureSampleLevel(map, map_sampler, far, receiver.layer, 0.0).x,
     );
-}
-
-// Return the four texels that lie so many columns to the right of those around `corner`, and so
-// many rows below them.
-fn shadow_texels_2_0(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
-    return shadow_texels(map, map_sampler, receiver, corner + vec2<f32>(2.0, 0.0));
-}
-fn shadow_texels_4_0(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
-    return shadow_texels(map, map_sampler, receiver, corner + vec2<f32>(4.0, 0.0));
-}
-fn shadow_texels_6_0(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
-    return shadow_texels(map, map_sampler, receiver, corner + vec2<f32>(6.0, 0.0));
-}
-fn shadow_texels_0_2(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
-    return shadow_texels(map, map_sampler, receiver, corner + vec2<f32>(0.0, 2.0));
-}
-fn shadow_texels_2_2(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
-    return shadow_texels(map, map_sampler, receiver, corner + vec2<f32>(2.0, 2.0));
-}
-fn shadow_texels_4_2(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
-    return shadow_texels(map, map_sampler, receiver, corner + vec2<f32>(4.0, 2.0));
-}
-fn shadow_texels_6_2(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
-    return shadow_texels(map, map_sampler, receiver, corner + vec2<f32>(6.0, 2.0));
-}
-fn shadow_texels_0_4(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
-    return shadow_texels(map, map_sampler, receiver, corner + vec2<f32>(0.0, 4.0));
-}
-fn shadow_texels_2_4(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
-    return shadow_texels(map, map_sampler, receiver, corner + vec2<f32>(2.0, 4.0));
-}
-fn shadow_texels_4_4(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
-    return shadow_texels(map, map_sampler, receiver, corner + vec2<f32>(4.0, 4.0));
-}
-fn shadow_texels_6_4(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
-    return shadow_texels(map, map_sampler, receiver, corner + vec2<f32>(6.0, 4.0));
-}
-fn shadow_texels_0_6(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
-    return shadow_texels(map, map_sampler, receiver, corner + vec2<f32>(0.0, 6.0));
-}
-fn shadow_texels_2_6(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
-    return shadow_texels(map, map_sampler, receiver, corner + vec2<f32>(2.0, 6.0));
-}
-fn shadow_texels_4_6(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
-    return shadow_texels(map, map_sampler, receiver, corner + vec2<f32>(4.0, 6.0));
-}
-fn shadow_texels_6_6(map: ShadowMap, map_sampler: sampler, receiver: ShadowReceiver, corner: vec2<f32>) -> vec4<f32> {
-    return shadow_texels(map, map_sampler, receiver, corner + vec2<f32>(6.0, 6.0));
 }

@@ -1,5 +1,5 @@
-//! Lists the shaders that are compiled: the lookups that the library emits, the textbook's, none, and
-//! the vertex stages of depth passes.
+//! Lists the shaders that are compiled: the lookups that the library emits, the textbook's, none,
+//! and the vertex stages of depth passes.
 
 use std::error::Error;
 

@@ -1,5 +1,5 @@
-//! Compiles shaders for several chips, each in a process of its own: a driver is told its chip when it
-//! is loaded.
+//! Compiles shaders for several chips, each in a process of its own: a driver is told its chip when
+//! it is loaded.
 
 use std::error::Error;
 use std::fs;

@@ -1,5 +1,5 @@
-//! Owns the scene's shadows, and the WGSL that samples them: a `DirectionalShadow` for each sun, and pools for spot and
-//! point lights.
+//! Owns the scene's shadows, and the WGSL that samples them: a `DirectionalShadow` for each sun,
+//! and pools for spot and point lights.
 
 use std::fmt::Write;
 
@@ -16,10 +16,11 @@ use crate::options::Options;
 
 /// Is the number of lights that the shader loops over at most.
 pub const MAX_LIGHTS: usize = 256;
-/// Is the largest number of directional lights with shadows, each of which needs a texture of its own.
+/// Is the largest number of directional lights with shadows, each of which needs a texture of its
+/// own.
 const MAX_SUNS: usize = 4;
-/// Is the number of local lights in one pool: 40 times six faces are 240 layers and 54 KB of uniforms, within WebGPU's
-/// defaults.
+/// Is the number of local lights in one pool: 40 times six faces are 240 layers and 54 KB of
+/// uniforms, within WebGPU's defaults.
 const POOL_CAPACITY: usize = 40;
 
 /// Is a set of maps, and the lights of the scene that it belongs to.
@@ -236,8 +237,8 @@ impl SceneLights {
         uniforms
     }
 
-    /// Returns the exposure that brings the brightest light to an irradiance of one at the middle of the scene, or, for
-    /// a light in the middle, at a quarter of the scene's radius.
+    /// Returns the exposure that brings the brightest light to an irradiance of one at the middle
+    /// of the scene, or, for a light in the middle, at a quarter of the scene's radius.
     pub fn exposure(&self, scene: &Scene) -> f32 {
         let bounds = scene.bounds_render();
         let middle = (bounds.min + bounds.max) * 0.5;
@@ -279,8 +280,8 @@ fn listed<L>(
         .collect()
 }
 
-/// Makes maps for suns one by one, and for spot and point lights in pools of one map size each. Names end in a letter,
-/// as the library requires.
+/// Makes maps for suns one by one, and for spot and point lights in pools of one map size each.
+/// Names end in a letter, as the library requires.
 fn make_maps(
     gpu: &Gpu,
     lights: &[Light],

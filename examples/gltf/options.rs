@@ -25,28 +25,30 @@ pub struct Options {
     /// Sets the size of the image in pixels.
     #[arg(long, default_value = "960x540", value_parser = size)]
     pub size: [u32; 2],
-    /// Sets the texels per side of each shadow map [default: 2048; less for spots and points where there are many]
+    /// Sets the texels per side of each shadow map [default: 2048; less for spots and points where
+    /// there are many]
     #[arg(long)]
     pub map_size: Option<u32>,
-    /// Selects nearest, hardware, box, bilinear, tent3, tent5 or tent7; the gathered ones with an edge sharpness, as in
-    /// tent3:3.
+    /// Selects nearest, hardware, box, bilinear, tent3, tent5 or tent7; the gathered ones with an
+    /// edge sharpness, as in tent3:3.
     #[arg(long, default_value = "tent3:3", value_parser = filter)]
     pub filter: Filter,
     /// Selects auto, normal-offset, or manual:CONSTANT,SLOPE in world units.
     #[arg(long, default_value = "auto", value_parser = bias)]
     pub bias: Bias,
-    /// Sets the number of cascades of a directional light, 1 to 8, each with a map of its own. Without it one map is
-    /// divided among cascades by predicted error.
+    /// Sets the number of cascades of a directional light, 1 to 8, each with a map of its own.
+    /// Without it one map is divided among cascades by predicted error.
     #[arg(long)]
     pub cascades: Option<u32>,
-    /// Sets the depths along the view at which all cascades but the last end, as in 10,30,80; without it they have
-    /// equal ratios.
+    /// Sets the depths along the view at which all cascades but the last end, as in 10,30,80;
+    /// without it they have equal ratios.
     #[arg(long, value_delimiter = ',', num_args = 1..=7)]
     pub splits: Vec<f32>,
     /// Sets the distance along the view beyond which nothing is shadowed.
     #[arg(long, default_value_t = f32::INFINITY)]
     pub max_distance: f32,
-    /// Sets the angular diameter of directional lights in radians, for soft shadows (the sun's is 0.0093).
+    /// Sets the angular diameter of directional lights in radians, for soft shadows (the sun's is
+    /// 0.0093).
     #[arg(long, value_parser = positive)]
     pub angular_diameter: Option<f32>,
     /// Sets the radius of spot and point lights in metres, for soft shadows.
@@ -76,8 +78,8 @@ impl Options {
         }
     }
 
-    /// Returns where the cascades end. A number of `--splits` that is not one fewer than `--cascades` is refused by the
-    /// light.
+    /// Returns where the cascades end. A number of `--splits` that is not one fewer than
+    /// `--cascades` is refused by the light.
     pub fn split(&self) -> CascadeSplit<'_> {
         if self.splits.is_empty() {
             return CascadeSplit::Logarithmic;

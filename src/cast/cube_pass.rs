@@ -69,8 +69,8 @@ impl CubePass {
         }))
     }
 
-    /// Stages one pass for `views`, all of which are to be drawn whole. Returns `None` where a pass for each is
-    /// cheaper, or where a caster cannot be drawn into six faces at once.
+    /// Stages one pass for `views`, all of which are to be drawn whole. Returns `None` where a pass
+    /// for each is cheaper, or where a caster cannot be drawn into six faces at once.
     pub fn prepare<'a>(
         &self,
         device: &wgpu::Device,
@@ -88,7 +88,8 @@ impl CubePass {
         let Some(drawn) = drawn.collect() else {
             return Ok(None);
         };
-        // A face without a view stays empty: this matrix places every vertex at a depth beyond the clip volume.
+        // A face without a view stays empty: this matrix places every vertex at a depth beyond the
+        // clip volume.
         let mut clipped_away = CasterViewUniform::zeroed();
         clipped_away.clip_from_anchor[3] = [0.0, 0.0, -1.0, 1.0];
         let mut uniforms = [clipped_away; FACE_COUNT as usize];
@@ -103,8 +104,8 @@ impl CubePass {
         }))
     }
 
-    /// Draws into the six layers of `map` at once. Each view's list of casters becomes the list of what was drawn into
-    /// it.
+    /// Draws into the six layers of `map` at once. Each view's list of casters becomes the list of
+    /// what was drawn into it.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,

@@ -41,11 +41,12 @@ impl PassDefaults<'_> {
     }
 }
 
-/// Draws casters one after the other. Each caster finds its pipeline, bind group 0, the view's rectangle as viewport and
-/// scissor rectangle, and depths from 0 to 1, whatever the caster before it has set. They are set again only after a
-/// caster that may have changed them: in software, setting bind group and scissor rectangle costs several times what a
-/// small draw costs. `variant` returns the one of a caster's pipelines that matches the pass; a caster for which it
-/// returns `None` is left out.
+/// Draws casters one after the other. Each caster finds its pipeline, bind group 0, the view's
+/// rectangle as viewport and scissor rectangle, and depths from 0 to 1, whatever the caster before
+/// it has set. They are set again only after a caster that may have changed them: in software,
+/// setting bind group and scissor rectangle costs several times what a small draw costs. `variant`
+/// returns the one of a caster's pipelines that matches the pass; a caster for which it returns
+/// `None` is left out.
 pub(crate) fn draw_casters<'c>(
     pass: &mut wgpu::RenderPass<'_>,
     defaults: &PassDefaults<'_>,

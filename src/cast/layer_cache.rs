@@ -1,20 +1,23 @@
-//! Tracks what each layer of a map caches, which of its casters are static, and so what a frame must draw.
+//! Tracks what each layer of a map caches, which of its casters are static, and so what a frame
+//! must draw.
 
 use crate::ShadowView;
 use crate::cast::{FrameCasters, Revision};
 use crate::fit::ViewPlacement;
 
-/// Is one view of this frame with the casters that it needs, by ascending index into the engine's list.
+/// Is one view of this frame with the casters that it needs, by ascending index into the engine's
+/// list.
 #[derive(Debug)]
 pub(crate) struct ViewDraws {
     pub view: ShadowView,
     pub casters: Vec<u32>,
-    /// States that the refresh of the view is deferred: the layer keeps its present depths, whatever has changed.
+    /// States that the refresh of the view is deferred: the layer keeps its present depths,
+    /// whatever has changed.
     pub deferred: bool,
     /// States how the layer is brought up to date; the recorder sets it.
     pub plan: Plan,
-    /// Counts the casters of the view that were copied from the static-caster cache instead of being drawn; the next
-    /// field counts their triangles.
+    /// Counts the casters of the view that were copied from the static-caster cache instead of
+    /// being drawn; the next field counts their triangles.
     pub copied: u32,
     pub copied_triangles: u64,
 }
@@ -41,8 +44,8 @@ pub(crate) enum Plan {
     All,
     /// Copies the static-caster cache into it, and draws the other casters over that.
     OverStaticCache,
-    /// Draws the static casters into the static-caster cache first, a texture of its own, and then does as
-    /// `OverStaticCache`.
+    /// Draws the static casters into the static-caster cache first, a texture of its own, and then
+    /// does as `OverStaticCache`.
     RenewStaticCache,
 }
 
@@ -66,32 +69,34 @@ struct Drawn {
     age: u32,
 }
 
-/// Is the number of draws without a change after which a caster, or a view, counts as static. A caster that is animated
-/// at a quarter of the frame rate or faster never does.
+/// Is the number of draws without a change after which a caster, or a view, counts as static. A
+/// caster that is animated at a quarter of the frame rate or faster never does.
 const STATIC_AFTER_DRAWS: u32 = 4;
 
-/// Is the number of copied texels that cost as much as one draw. A static-caster cache pays where drawing its casters
-/// again would cost more than copying a layer. In software a draw of a box costs as much as copying 100 000 texels
-/// (`cargo bench --bench cost`, the table in which one of many casters moves); a third of that leaves room for devices
-/// that draw faster in relation to their memory.
+/// Is the number of copied texels that cost as much as one draw. A static-caster cache pays where
+/// drawing its casters again would cost more than copying a layer. In software a draw of a box
+/// costs as much as copying 100 000 texels (`cargo bench --bench cost`, the table in which one of
+/// many casters moves); a third of that leaves room for devices that draw faster in relation to
+/// their memory.
 const TEXELS_PER_DRAW: u64 = 32_768;
 
-/// Is the number of copied texels that cost as much as one triangle. It compares the memory that a copied texel moves
-/// (8 bytes) with the corners that a triangle fetches and transforms (some 100 bytes where corners are shared); a
-/// software rasteriser takes far longer over triangles.
+/// Is the number of copied texels that cost as much as one triangle. It compares the memory that a
+/// copied texel moves (8 bytes) with the corners that a triangle fetches and transforms (some 100
+/// bytes where corners are shared); a software rasteriser takes far longer over triangles.
 const TEXELS_PER_TRIANGLE: u64 = 16;
 
-/// Is the longest time, in draws, for which no static-caster cache is made after one that did not last. With a pause
-/// this long, a cache made for nothing costs less than one draw in a hundred.
+/// Is the longest time, in draws, for which no static-caster cache is made after one that did not
+/// last. With a pause this long, a cache made for nothing costs less than one draw in a hundred.
 const LONGEST_COOLDOWN_DRAWS: u32 = 256;
 
-/// Holds what a layer of the map caches: the view, the casters as they were drawn, and its static casters.
+/// Holds what a layer of the map caches: the view, the casters as they were drawn, and its static
+/// casters.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LayerCache {
     /// Holds `None` before the first pass.
     placement: Option<ViewPlacement>,
-    /// Is the largest render coordinate, in world units, that the depths were computed from. They carry its rounding,
-    /// whatever the origin is by now.
+    /// Is the largest render coordinate, in world units, that the depths were computed from. They
+    /// carry its rounding, whatever the origin is by now.
     render_reach: f64,
     /// Counts the draws since the view last changed.
     age: u32,
@@ -108,7 +113,8 @@ struct StaticCasterCache {
     render_reach: f64,
     /// Counts the draws that used it.
     served: u32,
-    /// Is the number of draws until a cache may be made again; the next field is the length of the last such pause.
+    /// Is the number of draws until a cache may be made again; the next field is the length of the
+    /// last such pause.
     cooldown: u32,
     last_cooldown: u32,
 }
@@ -156,8 +162,8 @@ impl LayerCache {
         }
     }
 
-    /// Returns the largest render coordinate that the layer's depths will have been computed from once `draws` has been
-    /// carried out as planned.
+    /// Returns the largest render coordinate that the layer's depths will have been computed from
+    /// once `draws` has been carried out as planned.
     pub fn render_reach_after(&self, draws: &ViewDraws) -> f64 {
         let now = draws.view.render_reach();
         match draws.plan {
@@ -231,9 +237,10 @@ impl StaticCasterCache {
             && unchanged(&self.casters, draws, casters).count() == self.casters.len()
     }
 
-    /// Drops the cached casters. The fewer draws the cache has served, the longer no new one is made: the pause
-    /// doubles, from 1 draw up to [`LONGEST_COOLDOWN_DRAWS`], unless the cache served at least four times as many
-    /// draws as the last pause was long, which sets the pause to 0.
+    /// Drops the cached casters. The fewer draws the cache has served, the longer no new one is
+    /// made: the pause doubles, from 1 draw up to [`LONGEST_COOLDOWN_DRAWS`], unless the cache
+    /// served at least four times as many draws as the last pause was long, which sets the pause to
+    /// 0.
     fn discard(&mut self) {
         if self.casters.is_empty() {
             return;

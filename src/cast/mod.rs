@@ -1,4 +1,5 @@
-//! Renders the depth of casters. It uses the fit and the device, and does not depend on how maps are sampled.
+//! Renders the depth of casters. It uses the fit and the device, and does not depend on how maps
+//! are sampled.
 //!
 //! ```text
 //! caster.rs              ShadowCaster and Revision: what the engine implements

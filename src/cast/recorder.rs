@@ -18,8 +18,9 @@ pub(crate) struct Recorder {
     stride: u64,
     bind_group: wgpu::BindGroup,
     layers: Vec<Layer>,
-    /// Is false on wgpu's OpenGL backend, which copies no depth textures, and where views share a layer, since only
-    /// whole layers of depth are copied; there all casters of a view are drawn again.
+    /// Is false on wgpu's OpenGL backend, which copies no depth textures, and where views share a
+    /// layer, since only whole layers of depth are copied; there all casters of a view are drawn
+    /// again.
     can_copy: bool,
     /// Clears rectangles where all views share one layer; `None` where each has its own.
     rect_clear: Option<wgpu::RenderPipeline>,
@@ -65,7 +66,8 @@ impl PreparedViews<'_> {
 }
 
 impl Recorder {
-    /// Makes a recorder for `views` views, each with a layer of its own unless they share one.
+    /// Makes a recorder for `views` views, each with a layer of its own unless they share one;
+    /// `is_cube` states that they are the six faces of one cube.
     pub fn new(
         device: &wgpu::Device,
         label: &str,
@@ -143,8 +145,8 @@ impl Recorder {
         caches.map(DepthMap::bytes).sum()
     }
 
-    /// Plans the frame for `map` and stages the uniforms of `views`. Each view is made to allow for the rounding of the
-    /// depths that its layer will hold.
+    /// Plans the frame for `map` and stages the uniforms of `views`. Each view is made to allow for
+    /// the rounding of the depths that its layer will hold.
     pub fn prepare<'a>(
         &mut self,
         device: &wgpu::Device,
@@ -198,8 +200,8 @@ impl Recorder {
 
     /// Records what was planned and returns the number of passes.
     ///
-    /// The state of a layer is reset before anything is drawn into it and set again when its pass is complete: a caster
-    /// that panics leaves a layer behind that the next frame draws again.
+    /// The state of a layer is reset before anything is drawn into it and set again when its pass
+    /// is complete: a caster that panics leaves a layer behind that the next frame draws again.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -293,13 +295,14 @@ impl Recorder {
 }
 
 impl Layer {
-    /// Takes the state of the layer and leaves an empty one, under which no depths in the layer are relied on.
+    /// Takes the state of the layer and leaves an empty one, under which no depths in the layer are
+    /// relied on.
     fn take_cache(&mut self) -> LayerCache {
         std::mem::take(&mut self.cache)
     }
 
-    /// Makes the static-caster cache of the layer if it has none. Returns false where the device could not make one;
-    /// all casters are then drawn.
+    /// Makes the static-caster cache of the layer if it has none. Returns false where the device
+    /// could not make one; all casters are then drawn.
     fn make_static_cache(&mut self, device: &wgpu::Device, map: &DepthMap) -> bool {
         if self.static_cache.is_none() && !self.static_cache_failed {
             let label = format!("{} static casters", self.label);
@@ -360,8 +363,8 @@ impl LayerPass<'_> {
     }
 }
 
-/// Adds the pipelines of a view's casters to `pipelines`, each of which must have been made on `device` and for
-/// `format`.
+/// Adds the pipelines of a view's casters to `pipelines`, each of which must have been made on
+/// `device` and for `format`.
 fn add_pipelines<'a>(
     pipelines: &mut Vec<&'a CasterPipeline>,
     device: &wgpu::Device,

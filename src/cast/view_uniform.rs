@@ -1,4 +1,5 @@
-//! Defines bind group 0 of a depth pass: the view being rendered, as a caster's vertex stage reads it.
+//! Defines bind group 0 of a depth pass: the view being rendered, as a caster's vertex stage reads
+//! it.
 
 use bytemuck::{Pod, Zeroable};
 

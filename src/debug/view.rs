@@ -27,15 +27,17 @@ const FACES: u32 = 6;
 pub enum DebugImage {
     /// Draws the layer of this number, as it is stored in the texture.
     Layer(u32),
-    /// Draws the six faces of a point light as an unfolded cross that is four cells wide and three high: -x, -z, +x and
-    /// +z in the middle row, +y above -z, and -y below it. The cells outside the cross are mid-grey.
+    /// Draws the six faces of a point light as an unfolded cross that is four cells wide and three
+    /// high: -x, -z, +x and +z in the middle row, +y above -z, and -y below it. The cells outside
+    /// the cross are mid-grey.
     Cross,
     /// Draws the same cross of one light of a pool, which is given by the index of its slot.
     PoolCross(u32),
 }
 
-/// Draws depth maps as grey levels: black at the light, white at the far plane, or for a local light where the last receiver is seen
-/// within its range, and where nothing casts. Depths of local lights are shown as linear distance.
+/// Draws depth maps as grey levels: black at the light, white at the far plane, or for a local
+/// light where the last receiver is seen within its range, and where nothing casts. Depths of local
+/// lights are shown as linear distance.
 #[derive(Debug)]
 pub struct DebugView {
     device: wgpu::Device,
@@ -49,13 +51,13 @@ pub struct DebugView {
 }
 
 impl DebugView {
-    /// Creates a debug view for render passes with one colour target of `format`, no depth attachment and one sample
-    /// per pixel.
+    /// Creates a debug view for render passes with one colour target of `format`, no depth
+    /// attachment and one sample per pixel.
     ///
     /// # Errors
     /// Returns [`DebugViewError::Format`] for a format to which a shader cannot write floats,
-    /// [`DebugViewError::OverDeviceLimit`] for a device whose limits do not suffice, and [`DebugViewError::Device`] for
-    /// a device that is lost or out of memory.
+    /// [`DebugViewError::OverDeviceLimit`] for a device whose limits do not suffice, and
+    /// [`DebugViewError::Device`] for a device that is lost or out of memory.
     pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Result<Self, DebugViewError> {
         let floats = matches!(
             format.sample_type(None, Some(device.features())),
@@ -104,12 +106,13 @@ impl DebugView {
         capture_device_errors(device, create).map_err(not_made("the pipelines of a debug view"))
     }
 
-    /// Draws `image` of `maps` over the whole viewport of `pass`; the engine may set the viewport to a part of its
-    /// target. Changes the pipeline and bind group 0 of the pass.
+    /// Draws `image` of `maps` over the whole viewport of `pass`; the engine may set the viewport
+    /// to a part of its target. Changes the pipeline and bind group 0 of the pass.
     ///
     /// # Errors
-    /// Returns [`DebugViewError`] for a layer that the map does not have, for a cross of a light without a cube, for
-    /// maps of another device, and for a device that is lost or out of memory. Nothing is drawn then.
+    /// Returns [`DebugViewError`] for a layer that the map does not have, for a cross of a light
+    /// without a cube, for maps of another device, and for a device that is lost or out of memory.
+    /// Nothing is drawn then.
     pub fn draw(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
@@ -168,23 +171,24 @@ impl DebugView {
         Ok(())
     }
 
-    /// Multiplies the image in the target of `pass` by a colour for the view of `maps` that covers each pixel: red,
-    /// green, blue, yellow, cyan, magenta, orange and violet for the first eight layers, and grey where none of them
-    /// does.
+    /// Multiplies the image in the target of `pass` by a colour for the view of `maps` that covers
+    /// each pixel: red, green, blue, yellow, cyan, magenta, orange and violet for the first eight
+    /// layers, and grey where none of them does.
     ///
-    /// `depth` is a view of the image's single-sampled depth texture, which is stretched over the viewport.
-    /// `render_from_clip` transforms the camera's clip space to render space: it is the inverse of `clip_from_view *
-    /// view_from_render`. Pixels with a depth of 0 or 1 count as sky and are not tinted. The faces of a point light
-    /// overlap by a filter's reach, and the first of them is shown there. Changes the pipeline and bind group 0 of the
-    /// pass.
+    /// `depth` is a view of the image's single-sampled depth texture, which is stretched over the
+    /// viewport. `render_from_clip` transforms the camera's clip space to render space: it is the
+    /// inverse of `clip_from_view * view_from_render`. Pixels with a depth of 0 or 1 count as sky
+    /// and are not tinted. The faces of a point light overlap by a filter's reach, and the first of
+    /// them is shown there. Changes the pipeline and bind group 0 of the pass.
     ///
-    /// An engine that can change its shader may call `shadow_view_NAME(position)` instead, which returns the layer that
-    /// a lookup at the position uses.
+    /// An engine that can change its shader may call `shadow_view_NAME(position)` instead, which
+    /// returns the layer that a lookup at the position uses.
     ///
     /// # Errors
-    /// Returns [`DebugViewError::Format`] if the target cannot be blended, [`DebugViewError::OtherDevice`] for maps of
-    /// another device, and [`DebugViewError::Device`] for a device that is lost or out of memory and for a `depth` that
-    /// cannot be sampled. Nothing is drawn then.
+    /// Returns [`DebugViewError::Format`] if the target cannot be blended,
+    /// [`DebugViewError::OtherDevice`] for maps of another device, and [`DebugViewError::Device`]
+    /// for a device that is lost or out of memory and for a `depth` that cannot be sampled. Nothing
+    /// is drawn then.
     pub fn draw_cascades(
         &self,
         pass: &mut wgpu::RenderPass<'_>,

@@ -65,4 +65,14 @@ pub enum BindingsError {
         /// Is the name that was passed.
         name: String,
     },
+    /// Two modules are named of which one goes with a module that the other replaces.
+    #[error(
+        "shader::compose: names must be of modules that go together, got {name:?} and {other:?}"
+    )]
+    ConflictingModules {
+        /// Is the name of the one.
+        name: &'static str,
+        /// Is the name of the other.
+        other: &'static str,
+    },
 }

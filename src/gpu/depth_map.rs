@@ -14,8 +14,8 @@ pub(crate) struct DepthMap {
 }
 
 impl DepthMap {
-    /// Makes a map of `size` texels per side with `layers` layers. `field` is the path of the size in the caller's
-    /// descriptor.
+    /// Makes a map of `size` texels per side with `layers` layers. `field` is the path of the size
+    /// in the caller's descriptor.
     pub fn new(
         device: &wgpu::Device,
         label: &str,
@@ -147,9 +147,10 @@ impl DepthMap {
     }
 }
 
-/// Returns how many layers to allocate so that `layers` of them can be bound as an array. wgpu's OpenGL backend makes a
-/// texture of one layer a plain 2D texture, and a square one of a multiple of six layers a cube map; an array binding
-/// then reads nothing. One more layer, which is never used, keeps it an array.
+/// Returns how many layers to allocate so that `layers` of them can be bound as an array. wgpu's
+/// OpenGL backend makes a texture of one layer a plain 2D texture, and a square one of a multiple
+/// of six layers a cube map; an array binding then reads nothing. One more layer, which is never
+/// used, keeps it an array.
 pub(crate) fn allocated_layers(device: &wgpu::Device, layers: u64) -> u64 {
     let opengl = device.adapter_info().backend == wgpu::Backend::Gl;
     let not_an_array = layers == 1 || layers.is_multiple_of(6);

@@ -1,4 +1,5 @@
-//! Emits the WGSL of a set of lights: the modules that they use, the bindings, and the functions of each light.
+//! Emits the WGSL of a set of lights: the modules that they use, the bindings, and the functions of
+//! each light.
 
 use crate::error::BindingsError;
 use crate::receive::Bias;
@@ -9,8 +10,9 @@ use crate::receive::template;
 use crate::receive::texel_access::TexelAccess;
 use crate::shader;
 
-/// Returns the WGSL for `lights` in bind group `group`. `samplers` lists the samplers that their filters use, in the
-/// order of their bindings. `access` states how shaders of the device read single texels.
+/// Returns the WGSL for `lights` in bind group `group`. `samplers` lists the samplers that their
+/// filters use, in the order of their bindings. `access` states how shaders of the device read
+/// single texels.
 pub(crate) fn wgsl(
     group: u32,
     lights: &NamedMaps<'_>,
@@ -103,7 +105,8 @@ fn place_functions(name: &str, maps: &SampledMaps<'_>) -> String {
     text
 }
 
-/// Returns the functions that find where a position falls in `count` cascades, written out from the last to the first.
+/// Returns the functions that find where a position falls in `count` cascades, written out from the
+/// last to the first.
 fn cascades(name: &str, index: &str, count: u32) -> String {
     let mut next = count.saturating_sub(1).to_string();
     let mut text = template::LastCascade { name, next: &next }.fill();
@@ -200,7 +203,8 @@ fn visibility_function(name: &str, maps: &SampledMaps<'_>) -> String {
     .fill()
 }
 
-/// Returns the name of the parameter by which a pool's functions select a light. It is empty for a single light.
+/// Returns the name of the parameter by which a pool's functions select a light. It is empty for a
+/// single light.
 fn index(maps: &SampledMaps<'_>) -> &'static str {
     if maps.indexed { "index" } else { "" }
 }
@@ -210,19 +214,21 @@ fn view_count(maps: &SampledMaps<'_>) -> String {
     format!("{}u", maps.view_count)
 }
 
-/// Returns the first view of the light as a WGSL expression. For an index that no slot of the pool has, its value is
-/// the number of all views. The index is clamped before the multiplication, because not every product fits in 32 bits.
+/// Returns the first view of the light as a WGSL expression. For an index that no slot of the pool
+/// has, its value is the number of all views. The index is clamped before the multiplication,
+/// because not every product fits in 32 bits.
 fn first_view(maps: &SampledMaps<'_>) -> String {
     limited_view(maps, maps.view_count / maps.views_per_light)
 }
 
-/// Returns a view of the light as a WGSL expression, for reading what all views of the light have in common. For an
-/// index that no slot of the pool has, its value is a view of another light.
+/// Returns a view of the light as a WGSL expression, for reading what all views of the light have
+/// in common. For an index that no slot of the pool has, its value is a view of another light.
 fn any_view(maps: &SampledMaps<'_>) -> String {
     limited_view(maps, maps.view_count / maps.views_per_light - 1)
 }
 
-/// Returns the first view of the light at the pool's index, or of the one at `last_index` where the index is greater.
+/// Returns the first view of the light at the pool's index, or of the one at `last_index` where the
+/// index is greater.
 fn limited_view(maps: &SampledMaps<'_>, last_index: u32) -> String {
     if maps.indexed {
         format!("min(index, {last_index}u) * {}u", maps.views_per_light)

@@ -5,8 +5,8 @@ use crate::cast::{VIEW_UNIFORM_BYTES, caster_group};
 use crate::gpu::{Need, allocated_layers};
 use crate::receive::view_uniform_bytes;
 
-/// Accepts devices whose limits suffice for a light with `views` views in `layers` layers. `field` is the path of the
-/// field that sets their number.
+/// Accepts devices whose limits suffice for a light with `views` views in `layers` layers. `field`
+/// is the path of the field that sets their number.
 pub(crate) fn check_layers(
     device: &wgpu::Device,
     field: &'static str,

@@ -8,8 +8,8 @@ use crate::receive::bias::lateral_error_texels;
 use crate::receive::layer_state::{ALL_TEXELS, LayerState, NO_LIMIT};
 use crate::receive::uniforms::{ROUNDING_TEXELS, Sampling, ShadowMapping, ShadowViewUniform};
 
-/// Returns a range for the uniforms. An infinite one becomes a distance that no position exceeds and
-/// whose square is finite.
+/// Returns a range for the uniforms. An infinite one becomes a distance that no position exceeds
+/// and whose square is finite.
 fn endless_range(range_world: f64) -> f32 {
     range_world.min(1e18) as f32
 }
@@ -51,8 +51,8 @@ pub(crate) struct LightUniforms {
     /// Is the point of render space from which positions start: the light, or a point in the first
     /// view of a directional light.
     anchor_render: Vec3,
-    /// Is the largest render coordinate whose rounding any view of a local light allows for; 0 for a
-    /// directional one.
+    /// Is the largest render coordinate whose rounding any view of a local light allows for; 0 for
+    /// a directional one.
     local_render_reach: f64,
 }
 
@@ -74,11 +74,11 @@ impl LightUniforms {
     ///
     /// The faces of a cube share the largest rounding of their render coordinates, which differs
     /// only by what their farthest casters add. Cascades share their anchor. Of a position at a
-    /// distance `d` from it, the subtraction errs by `u d`, the rounded rows of the rotation and the
-    /// products with them by `4√3 u d`, and the scale and offset of a cascade by `u d` each: in all
-    /// by less than `10 u d`. By what `d` is larger than under the cascade's own anchor, which is at
-    /// most the distance of the two anchors, the reach is larger 2.5 times, since the rounding is
-    /// `4u` of the reach.
+    /// distance `d` from it, the subtraction errs by `u d`, the rounded rows of the rotation and
+    /// the products with them by `4√3 u d`, and the scale and offset of a cascade by `u d` each: in
+    /// all by less than `10 u d`. By what `d` is larger than under the cascade's own anchor, which
+    /// is at most the distance of the two anchors, the reach is larger 2.5 times, since the
+    /// rounding is `4u` of the reach.
     pub fn sampled(&self, view: &ShadowView) -> ShadowView {
         let apart = (view.anchor_render() - self.anchor_render).as_dvec3();
         match view.placement() {

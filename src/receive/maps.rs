@@ -1,4 +1,5 @@
-//! Defines what every light owns: a depth map, the recorder that fills it, the uniforms of its views, and a report.
+//! Defines what every light owns: a depth map, the recorder that fills it, the uniforms of its
+//! views, and a report.
 
 use glam::Vec3;
 
@@ -13,12 +14,13 @@ use crate::receive::sampled_maps::{SampledMaps, Selection};
 use crate::receive::{Sampling, ShadowViewUniform, view_uniform_bytes};
 use crate::{ShadowError, ShadowView};
 
-/// Holds what shaders sample of a light: its depth texture and its uniform buffer, with the settings that determine how
-/// they are sampled.
+/// Holds what shaders sample of a light: its depth texture and its uniform buffer, with the
+/// settings that determine how they are sampled.
 ///
-/// A light's `maps` method returns it. It is passed unchanged to [`ShadowBindings`](crate::ShadowBindings) and
-/// [`DebugView`](crate::debug::DebugView); the methods that return its parts are meant for engines with their own bind
-/// groups. Texture and buffer stay the same for the whole lifetime of the light, so a bind group remains valid in all
+/// A light's `maps` method returns it. It is passed unchanged to
+/// [`ShadowBindings`](crate::ShadowBindings) and [`DebugView`](crate::debug::DebugView); the
+/// methods that return its parts are meant for engines with their own bind groups. Texture and
+/// buffer stay the same for the whole lifetime of the light, so a bind group remains valid in all
 /// frames.
 #[derive(Debug)]
 pub struct ShadowMaps {
@@ -56,7 +58,8 @@ pub(crate) struct ShadowMapsDescriptor<'a> {
     /// Is the number of lights: one, or the capacity of a pool.
     pub lights: u32,
     pub views_per_light: u32,
-    /// Names what determines the number of layers, for the error of a device that cannot hold so many.
+    /// Names what determines the number of layers, for the error of a device that cannot hold so
+    /// many.
     pub layers_field: &'static str,
     pub sampling: Sampling,
     pub selection: Selection,
@@ -70,7 +73,8 @@ pub(crate) struct ShadowMapsDescriptor<'a> {
 pub(crate) struct MapsFrame<'a> {
     /// Describes the views of this frame's lights; all other views are lit and not reported.
     pub layers: &'a [LayerState],
-    /// Holds the views into which something casts, in the order of `layers`; the other layers are lit.
+    /// Holds the views into which something casts, in the order of `layers`; the other layers are
+    /// lit.
     pub views: Vec<ViewDraws>,
     /// Is the position of the first camera, if there is one.
     pub camera_render: Option<Vec3>,
@@ -85,7 +89,8 @@ impl ShadowMaps {
         device: &wgpu::Device,
         descriptor: &ShadowMapsDescriptor<'_>,
     ) -> Result<Self, ShadowError> {
-        // Every product fits in 64 bits. A number of layers that a device can hold also fits in 32 bits.
+        // Every product fits in 64 bits. A number of layers that a device can hold also fits in 32
+        // bits.
         let views = u64::from(descriptor.lights) * u64::from(descriptor.views_per_light);
         let layers = if descriptor.shares_layer { 1 } else { views };
         check_layers(device, descriptor.layers_field, layers, views)?;
@@ -139,18 +144,18 @@ impl ShadowMaps {
         &self.sampling
     }
 
-    /// Returns the depth texture. Its depths are reversed: near 1, far 0. Its format is `Depth32Float`, or that of a
-    /// directional light's [`DepthFormat`](crate::DepthFormat). It has one layer per cascade, spot light or cube face
-    /// (+x, -x, +y, -y, +z, -z), and a single layer under
-    /// [`CascadeLayout::Automatic`](crate::CascadeLayout::Automatic); a pool has the layers of its
-    /// slots in order. It can be copied from on all backends but OpenGL.
+    /// Returns the depth texture. Its depths are reversed: near 1, far 0. Its format is
+    /// `Depth32Float`, or that of a directional light's [`DepthFormat`](crate::DepthFormat). It has
+    /// one layer per cascade, spot light or cube face (+x, -x, +y, -y, +z, -z), and a single layer
+    /// under [`CascadeLayout::Automatic`](crate::CascadeLayout::Automatic); a pool has the layers
+    /// of its slots in order. It can be copied from on all backends but OpenGL.
     pub fn texture(&self) -> &wgpu::Texture {
         self.map.texture()
     }
 
-    /// Returns a view of all layers, to be bound as a `texture_depth_2d_array`. Where shaders cannot gather (OpenGL ES
-    /// 3.0, WebGL 2), bind it as a `texture_2d_array<f32>` for all filters but
-    /// [`Filter::Hardware`](crate::Filter::Hardware).
+    /// Returns a view of all layers, to be bound as a `texture_depth_2d_array`. Where shaders
+    /// cannot gather (OpenGL ES 3.0, WebGL 2), bind it as a `texture_2d_array<f32>` for all filters
+    /// but [`Filter::Hardware`](crate::Filter::Hardware).
     pub fn texture_view(&self) -> &wgpu::TextureView {
         self.map.array_view()
     }
@@ -170,8 +175,9 @@ impl ShadowMaps {
         &self.uniform_values
     }
 
-    /// Returns the views of the last frame, in the order of the frame's lights and of the layers of each. Views into
-    /// which nothing casts are omitted. [`ShadowView::layer`] tells which layer each view is rendered into.
+    /// Returns the views of the last frame, in the order of the frame's lights and of the layers of
+    /// each. Views into which nothing casts are omitted. [`ShadowView::layer`] tells which layer
+    /// each view is rendered into.
     pub fn views(&self) -> impl ExactSizeIterator<Item = &ShadowView> {
         self.views.iter().map(|draws| &draws.view)
     }
@@ -201,7 +207,8 @@ impl ShadowMaps {
         &self.device
     }
 
-    /// Resets the state of all layers and of the uniform buffer, so that the next frame draws and uploads everything.
+    /// Resets the state of all layers and of the uniform buffer, so that the next frame draws and
+    /// uploads everything.
     pub(crate) fn invalidate(&mut self) {
         self.recorder.invalidate();
         self.uniforms.invalidate();
@@ -224,8 +231,8 @@ impl ShadowMaps {
         std::mem::take(&mut self.memory.views)
     }
 
-    /// Uploads the uniforms of a frame and records its depth passes. If it returns an error, nothing has been recorded
-    /// and nothing has changed.
+    /// Uploads the uniforms of a frame and records its depth passes. If it returns an error,
+    /// nothing has been recorded and nothing has changed.
     pub(crate) fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -248,7 +255,8 @@ impl ShadowMaps {
             .prepare(device, bytemuck::cast_slice(&uniform_values))?;
         let draws = views.iter().any(|draws| draws.plan != Plan::Keep);
         if draws && upload.is_none() && !prepared.uploads() {
-            // Nothing was created on the device so far, so that a lost device has not been noticed yet.
+            // Nothing was created on the device so far, so that a lost device has not been noticed
+            // yet.
             capture_device_errors(device, || ()).map_err(|refusal| {
                 ShadowError::Device(DeviceError {
                     object: "a depth pass",

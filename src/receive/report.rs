@@ -12,10 +12,11 @@ pub enum ViewStatus {
     Drawn,
     /// Nothing in the view had changed, and its map was kept.
     Kept,
-    /// The view needed drawing, but the frame's budget did not suffice: it keeps its last map, or is lit if it has
-    /// none.
+    /// The view needed drawing, but the frame's budget did not suffice: it keeps its last map, or
+    /// is lit if it has none.
     Deferred,
-    /// Nothing casts onto any receiver that the view covers: it has no map, and its receivers are lit.
+    /// Nothing casts onto any receiver that the view covers: it has no map, and its receivers are
+    /// lit.
     Empty,
 }
 
@@ -29,28 +30,34 @@ pub struct ViewReport {
     pub texels: TexelRect,
     /// Tells how the view was brought up to date.
     pub status: ViewStatus,
-    /// Counts the casters in the view: those that its pass drew, if it had one, and those that were copied. Where all
-    /// faces of a point light were drawn in one pass, it counts all casters of that pass.
+    /// Counts the casters in the view: those that its pass drew, if it had one, and those that were
+    /// copied. Where all faces of a point light were drawn in one pass, it counts all casters of
+    /// that pass.
     pub casters: u32,
-    /// Counts those of the casters that were not drawn: they had not changed for some frames, and the static-caster
-    /// cache, which contains them, was copied into the layer before the other casters were drawn.
+    /// Counts those of the casters that were not drawn: they had not changed for some frames, and
+    /// the static-caster cache, which contains them, was copied into the layer before the other
+    /// casters were drawn.
     pub copied: u32,
     /// Counts the triangles of the casters that were not copied, as far as the casters report them
     /// ([`ShadowCaster::triangles`](crate::ShadowCaster::triangles)).
     pub triangles: u64,
-    /// Counts the casters that were culled because their shadows cannot fall on what the view covers.
+    /// Counts the casters that were culled because their shadows cannot fall on what the view
+    /// covers.
     pub culled: u32,
     /// Is the world size of a texel along the map's x and y. For a local light it is that at the
-    /// farthest receiver that is seen within its range, where it is largest. It is zero for a view without a map.
+    /// farthest receiver that is seen within its range, where it is largest. It is zero for a view
+    /// without a map.
     pub texel_size_world: Vec2,
-    /// Is the world distance from the near plane to the far plane, or for a local light to the farthest receiver that
-    /// is seen within its range, rounded up by at most 1.19. It is zero for a view without a map.
+    /// Is the world distance from the near plane to the far plane, or for a local light to the
+    /// farthest receiver that is seen within its range, rounded up by at most 1.19. It is zero for
+    /// a view without a map.
     pub depth_range_world: f32,
-    /// Is the height in world units above which a caster that lies on a surface always casts its full shadow onto it:
-    /// the largest gap (peter-panning) that the light's bias can leave, at the worst angle of the light.
+    /// Is the height in world units above which a caster that lies on a surface always casts its
+    /// full shadow onto it: the largest gap (peter-panning) that the light's bias can leave, at the
+    /// worst angle of the light.
     pub max_peter_panning_world: f32,
-    /// Describes the slice of a camera's view that a cascade covers, and how much of the map falls on it. It is `None`
-    /// for all other views.
+    /// Describes the slice of a camera's view that a cascade covers, and how much of the map falls
+    /// on it. It is `None` for all other views.
     pub slice: Option<SliceReport>,
 }
 
@@ -79,12 +86,12 @@ impl ViewReport {
 pub struct ShadowReport {
     /// Has one entry per view, in the order of the frame's lights and of the layers of each.
     pub views: Vec<ViewReport>,
-    /// Lists the bounds of casters and receivers that have a NaN or an infinite corner. Their objects are left out of
-    /// the frame: such a caster has no shadow.
+    /// Lists the bounds of casters and receivers that have a NaN or an infinite corner. Their
+    /// objects are left out of the frame: such a caster has no shadow.
     pub broken_bounds: Vec<BrokenBounds>,
-    /// Counts the depth passes that were recorded: one per drawn view, two where the static-caster cache was drawn
-    /// first, and a single one for all faces of a point light where that is cheaper ([`OmniShadow`](crate::OmniShadow)
-    /// states when).
+    /// Counts the depth passes that were recorded: one per drawn view, two where the static-caster
+    /// cache was drawn first, and a single one for all faces of a point light where that is cheaper
+    /// ([`OmniShadow`](crate::OmniShadow) states when).
     pub passes: u32,
     /// Is the error that is predicted for the layout of a directional light under
     /// [`CascadeLayout::Automatic`](crate::CascadeLayout::Automatic): the root of the mean squared error of visibility
@@ -96,8 +103,8 @@ pub struct ShadowReport {
 }
 
 impl ShadowReport {
-    /// Returns the number of casters drawn. A caster counts once for each view that was drawn with it, or once in all
-    /// where six faces were drawn in one pass.
+    /// Returns the number of casters drawn. A caster counts once for each view that was drawn with
+    /// it, or once in all where six faces were drawn in one pass.
     pub fn draws(&self) -> u32 {
         let draws = self
             .drawn()
@@ -109,7 +116,8 @@ impl ShadowReport {
         }
     }
 
-    /// Returns the number of triangles drawn, summed over the views that were drawn, as far as the casters report them.
+    /// Returns the number of triangles drawn, summed over the views that were drawn, as far as the
+    /// casters report them.
     pub fn triangles(&self) -> u64 {
         self.drawn()
             .map(|view| view.triangles)

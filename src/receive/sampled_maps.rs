@@ -21,10 +21,12 @@ pub(crate) struct SampledMaps<'a> {
     pub indexed: bool,
 }
 
-/// Tells how a position selects one of a light's views. Everything after that is the same for all lights.
+/// Tells how a position selects one of a light's views. Everything after that is the same for all
+/// lights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Selection {
-    /// Selects the first view that contains the whole kernel: the cascades of a directional light, from near to far.
+    /// Selects the first view that contains the whole kernel: the cascades of a directional light,
+    /// from near to far.
     Cascades,
     /// Selects the only view: that of a spot light.
     OneView,

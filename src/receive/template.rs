@@ -1,9 +1,11 @@
-//! Fills the WGSL templates under `wgsl/template/`. Each template is a struct here, with a field for every hole.
+//! Fills the WGSL templates under `wgsl/template/`. Each template is a struct here, with a field
+//! for every hole.
 //!
-//! A hole is the part of an identifier that is in capitals, such as `NAME` in `shadow_views_NAME`. The library's own
-//! constants, which begin with `SHADOW_`, have no holes, and comments have none either. Together with the declarations
-//! in `wgsl/template/holes.wgsl` the templates are valid WGSL as they stand. The tests below check that the fields of
-//! every struct are exactly the holes of its file, so filling a template cannot fail.
+//! A hole is the part of an identifier that is in capitals, such as `NAME` in `shadow_views_NAME`.
+//! The library's own constants, which begin with `SHADOW_`, have no holes, and comments have none
+//! either. Together with the declarations in `wgsl/template/holes.wgsl` the templates are valid
+//! WGSL as they stand. The tests below check that the fields of every struct are exactly the holes
+//! of its file, so filling a template cannot fail.
 
 use std::ops::Range;
 
@@ -54,9 +56,14 @@ templates! {
     /// Defines `shadow_view_NAME`.
     View("view.wgsl") { name, index, view_count }
     /// Defines `shadow_NAME` as one lookup in one view.
-    SingleLookup("single_lookup.wgsl") { name, index, any_view, bias, filter, sampler, weight, faded, layer }
-    /// Defines `shadow_NAME` as the weighted mean of a lookup in each of the cascades that blend at a position.
-    BlendedLookup("blended_lookup.wgsl") { name, index, view_count, bias, filter, sampler, weight, faded, layer }
+    SingleLookup("single_lookup.wgsl") {
+        name, index, any_view, bias, filter, sampler, weight, faded, layer
+    }
+    /// Defines `shadow_NAME` as the weighted mean of a lookup in each of the cascades that blend at
+    /// a position.
+    BlendedLookup("blended_lookup.wgsl") {
+        name, index, view_count, bias, filter, sampler, weight, faded, layer
+    }
     /// Defines `shadow_NAME` as the mean of lookups in many directions from a point light.
     MeanLookup("mean_lookup.wgsl") {
         name, index, any_view, pattern, sample_count, sample_count_f32, surface, normal, bias, filter, sampler,
@@ -64,8 +71,8 @@ templates! {
     }
 }
 
-/// Returns `source` with each hole replaced by the value of its name. Where the value is empty, the rest of the list
-/// item is removed as well, up to and including the comma.
+/// Returns `source` with each hole replaced by the value of its name. Where the value is empty, the
+/// rest of the list item is removed as well, up to and including the comma.
 fn fill(source: &str, values: &[(&str, &str)]) -> String {
     let mut text = String::with_capacity(source.len());
     for line in source.split_inclusive('\n') {
@@ -104,7 +111,8 @@ fn first_hole(code: &str) -> Option<Range<usize>> {
     }
 }
 
-/// Returns the range of the hole in an identifier, which consists of the words in capitals between underscores.
+/// Returns the range of the hole in an identifier, which consists of the words in capitals between
+/// underscores.
 fn hole_of(identifier: &str) -> Option<Range<usize>> {
     if identifier.starts_with("SHADOW_") {
         return None;
@@ -154,8 +162,8 @@ mod tests {
         assert!(failures.is_empty(), "{}", failures.join("\n"));
     }
 
-    /// Checks that every file of the folder is a template, except the one that declares their holes, and that this file
-    /// declares exactly the holes of the templates.
+    /// Checks that every file of the folder is a template, except the one that declares their
+    /// holes, and that this file declares exactly the holes of the templates.
     #[test]
     fn files_are_the_templates() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("wgsl/template");
@@ -186,7 +194,8 @@ mod tests {
             filled("NAME_COUNT NAME_radius my_NAME_b"),
             "2u sun_radius my_sun_b"
         );
-        // Constants of the library, types, comments, and words that merely contain the letters are not holes.
+        // Constants of the library, types, comments, and words that merely contain the letters are
+        // not holes.
         let kept = "SHADOW_NAME ShadowNAME NAMEs aNAME // NAME\n";
         assert_eq!(filled(kept), kept);
         assert_eq!(filled("f(INDEX: u32, a: f32)"), "f(a: f32)");

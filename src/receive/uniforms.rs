@@ -6,17 +6,19 @@ use crate::receive::bias::{BiasScheme, lateral_error_texels};
 use crate::receive::{Bias, Filter};
 use bytemuck::{Pod, Zeroable};
 
-/// Holds what the WGSL functions read of one view of a light: the bytes of the WGSL struct `ShadowViewUniform` in
-/// `wgsl/view.wgsl`.
+/// Holds what the WGSL functions read of one view of a light: the bytes of the WGSL struct
+/// `ShadowViewUniform` in `wgsl/view.wgsl`.
 ///
-/// [`ShadowMaps::uniform_buffer`](crate::ShadowMaps::uniform_buffer) already holds these for every layer of a light. An
-/// engine that keeps them in a buffer of its own copies the bytes of
-/// [`ShadowMaps::view_uniforms`](crate::ShadowMaps::view_uniforms) after each frame, for instance with
-/// `bytemuck::cast_slice`. Their layout is that of a uniform buffer: an `array<ShadowViewUniform, N>` in WGSL has a
-/// stride of [`SIZE_BYTES`](Self::SIZE_BYTES) and no padding.
+/// [`ShadowMaps::uniform_buffer`](crate::ShadowMaps::uniform_buffer) already holds these for every
+/// layer of a light. An engine that keeps them in a buffer of its own copies the bytes of
+/// [`ShadowMaps::view_uniforms`](crate::ShadowMaps::view_uniforms) after each frame, for instance
+/// with `bytemuck::cast_slice`. Their layout is that of a uniform buffer: an
+/// `array<ShadowViewUniform, N>` in WGSL has a stride of [`SIZE_BYTES`](Self::SIZE_BYTES) and no
+/// padding.
 ///
-/// The members are read only by the library's own WGSL and may change with every version, so the bytes belong to the
-/// WGSL of the same version. [`ShadowMaps::views`](crate::ShadowMaps::views) returns what each view covers.
+/// The members are read only by the library's own WGSL and may change with every version, so the
+/// bytes belong to the WGSL of the same version. [`ShadowMaps::views`](crate::ShadowMaps::views)
+/// returns what each view covers.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct ShadowViewUniform {
@@ -134,7 +136,8 @@ impl ShadowMapping {
 }
 
 impl ShadowViewUniform {
-    /// Is the size in bytes, and the stride in an array: a multiple of 16, as uniform buffers require.
+    /// Is the size in bytes, and the stride in an array: a multiple of 16, as uniform buffers
+    /// require.
     pub const SIZE_BYTES: u64 = size_of::<Self>() as u64;
 }
 
@@ -155,7 +158,8 @@ pub(crate) struct Sampling {
     pub fade: f32,
 }
 
-/// Bounds the distance in texels by which rounding may move a lookup: the error `6uN` is 1/350 of a texel at N = 8192.
+/// Bounds the distance in texels by which rounding may move a lookup: the error `6uN` is 1/350 of a
+/// texel at N = 8192.
 pub(crate) const ROUNDING_TEXELS: f64 = 1.0 / 64.0;
 
 impl Sampling {
@@ -170,23 +174,25 @@ impl Sampling {
         }
     }
 
-    /// Returns the height in world units above which a caster that lies on a surface always casts onto it: the gap that
-    /// the bias can leave, and two steps of the map's format. One step is added to the receiver's depth, and by another
-    /// the caster may be stored too far away.
+    /// Returns the height in world units above which a caster that lies on a surface always casts
+    /// onto it: the gap that the bias can leave, and two steps of the map's format. One step is
+    /// added to the receiver's depth, and by another the caster may be stored too far away.
     pub fn max_peter_panning_world(&self, view: &ShadowView) -> f32 {
         let step = self.depth_format.step_ndc() * f64::from(view.depth_range_world());
         self.bias.max_peter_panning_world(self.filter, view) + 2.0 * step as f32
     }
 
-    /// Returns the height above a surface, in texels, below which a caster may leave no shadow on it, at the worst
-    /// angle.
+    /// Returns the height above a surface, in texels, below which a caster may leave no shadow on
+    /// it, at the worst angle.
     pub fn gap_texels(&self) -> f64 {
         let reach = self.bias.offset_texels(self.filter) + self.filter.reach_texels();
         reach * std::f64::consts::SQRT_2
     }
 
-    /// Returns the offset along the normal that a lookup adds, in texels: for a receiver that has one
-    /// reference depth, that of the bias and the lateral error. A tangent plane's slack is depth.
+    /// Returns the offset along the normal that a lookup adds, in texels times |nx| + |ny| of the
+    /// normal in light space: that of the bias, and the lateral error where all texels are compared
+    /// with one reference depth. A tangent plane has a reference depth per texel, and allows for
+    /// the lateral error in those.
     pub fn lookup_offset_texels(&self, view: &ShadowView) -> f64 {
         let offset = self.bias.offset_texels(self.filter);
         match self.bias.scheme(self.filter) {
@@ -195,14 +201,16 @@ impl Sampling {
         }
     }
 
-    /// Returns the number of texels by which a lookup may deviate from the position of its receiver: the filter's
-    /// reach, the distance across the map by which an offset along the normal can move it, and rounding.
+    /// Returns the number of texels by which a lookup may deviate from the position of its
+    /// receiver: the filter's reach, the distance across the map by which an offset along the
+    /// normal can move it, and rounding.
     pub fn border_texels(&self) -> f64 {
         let sideways = self.bias.offset_texels(self.filter) * std::f64::consts::SQRT_2;
         self.filter.reach_texels() + sideways + ROUNDING_TEXELS
     }
 
-    /// Returns the number of whole texels that a fitted map keeps free on every side, so that no kernel leaves it.
+    /// Returns the number of whole texels that a fitted map keeps free on every side, so that no
+    /// kernel leaves it.
     pub fn margin_texels(&self) -> u32 {
         self.border_texels().ceil() as u32
     }

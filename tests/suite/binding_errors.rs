@@ -220,3 +220,18 @@ fn debug_views_that_cannot_be_drawn() {
     let pixels = readback::rgba8(gpu, &target);
     assert!(pixels.pixels().all(|pixel| pixel.0 == [0, 0, 0, 255]));
 }
+
+#[test]
+fn modules_that_do_not_go_together() {
+    let names = ["texels_by_samples", "texels_by_offsets", "filter_tent3"];
+    let error = shader::compose(&names).expect_err("gathers where there are none");
+    let conflict = BindingsError::ConflictingModules {
+        name: "texels_by_offsets",
+        other: "texels_by_samples",
+    };
+    assert_eq!(error, conflict);
+    assert_eq!(
+        error.to_string(),
+        "shader::compose: names must be of modules that go together, got \"texels_by_offsets\" and \"texels_by_samples\""
+    );
+}

@@ -1,32 +1,12 @@
 //! Tests what `ShadowBindings` emits for every kind of light, every filter and every bias, alone
 //! and combined.
 
-use wgpu_shadows::{Bias, Filter, ShadowBindings, ShadowBindingsDescriptor, ShadowMaps};
+use shadow_support::compositions::{BIASES, filters};
+use wgpu_shadows::{ShadowBindings, ShadowBindingsDescriptor, ShadowMaps};
 
 use crate::fixtures::gpu::gpu;
 use crate::fixtures::lights::{Kind, Light};
 use crate::fixtures::wgsl;
-
-const BIASES: [Bias; 3] = [
-    Bias::Auto,
-    Bias::NormalOffset,
-    Bias::Manual {
-        constant: 0.01,
-        slope: 0.1,
-    },
-];
-
-/// Lists the filters that every kind of light accepts in addition to [`Filter::PLANAR`].
-const SOFT: [Filter; 2] = [
-    Filter::Pcss { light_size: 0.01 },
-    Filter::PcssRotated { light_size: 0.01 },
-];
-
-/// Lists the filters that only point lights accept.
-const DIRECTIONS: [Filter; 2] = [
-    Filter::DirectionGrid { radius: 0.1 },
-    Filter::DirectionStar { radius: 0.1 },
-];
 
 struct Named {
     name: String,
@@ -37,11 +17,8 @@ struct Named {
 /// Returns a light of a kind for every filter and bias that it accepts. Maps are one texel, since
 /// only the WGSL is of interest.
 fn every_way(kind: Kind) -> Vec<Named> {
-    let directions: &[Filter] = if kind.has_cube() { &DIRECTIONS } else { &[] };
-    let filters = [Filter::PLANAR, &SOFT, directions].concat();
-    filters
-        .iter()
-        .flat_map(|filter| BIASES.map(|bias| (*filter, bias)))
+    filters(kind.has_cube())
+        .flat_map(|filter| BIASES.map(|bias| (filter, bias)))
         .map(|(filter, bias)| Named {
             name: format!("{kind:?} {filter:?} {bias:?}"),
             kind,

@@ -1,5 +1,5 @@
-//! Tests origins of any finite magnitude: a frame is correct or is refused. Nothing is drawn with a
-//! matrix that is not finite, and no view is reported as empty that is not.
+//! Tests suns at origins of any finite magnitude: a frame is correct or is refused. Nothing is
+//! drawn with a matrix that is not finite, and no view is reported as empty that is not.
 
 use glam::{DVec3, Mat4, Vec3};
 use shadow_support::camera::Camera;
@@ -7,13 +7,12 @@ use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use shadow_support::triangle::{Triangle, occluded};
 use wgpu_shadows::{
-    Aabb, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, MeshCaster, OmniLight,
-    OmniShadow, OmniShadowDescriptor, ShadowCaster, ShadowError, ShadowView, ShadowViewUniform,
-    SpotLight, SpotShadow, SpotShadowDescriptor, Stability, report::ViewStatus,
+    Aabb, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, MeshCaster,
+    ShadowCaster, ShadowError, ShadowView, ShadowViewUniform, Stability, report::ViewStatus,
 };
 
-use crate::fixtures::ask::{Ask, record_omni, record_spot, submitted};
-use crate::fixtures::frames::{Coverage, DirectionalFrame, OmniFrame, RecordFrame, SpotFrame};
+use crate::fixtures::ask::submitted;
+use crate::fixtures::frames::{Coverage, DirectionalFrame, RecordFrame};
 use crate::fixtures::gpu::gpu;
 use crate::fixtures::probe::SunProbe;
 use crate::fixtures::report::assert_whole;
@@ -25,7 +24,7 @@ const SLAB_HALF: f32 = 2.5;
 const SLAB_LOW: f32 = 0.4;
 const FLOOR_HALF: f32 = 4.0;
 
-fn meshes(unit: f32) -> [Mesh; 2] {
+pub(super) fn meshes(unit: f32) -> [Mesh; 2] {
     let slab = Mesh::cuboid(
         Vec3::new(-SLAB_HALF, SLAB_LOW, -SLAB_HALF) * unit,
         Vec3::new(SLAB_HALF, SLAB_LOW + 0.1, SLAB_HALF) * unit,
@@ -35,7 +34,7 @@ fn meshes(unit: f32) -> [Mesh; 2] {
 
 /// Returns origins of all magnitudes up to where the steps of f64 exceed the scene, and some of
 /// every size beyond.
-fn origins() -> Vec<DVec3> {
+pub(super) fn origins() -> Vec<DVec3> {
     let axes = [
         DVec3::X,
         DVec3::NEG_Y,
@@ -49,7 +48,7 @@ fn origins() -> Vec<DVec3> {
     origins
 }
 
-fn assert_finite<'a>(
+pub(super) fn assert_finite<'a>(
     views: impl Iterator<Item = &'a ShadowView>,
     uniforms: &[ShadowViewUniform],
     what: &str,
@@ -72,7 +71,7 @@ fn assert_finite<'a>(
 }
 
 /// Returns the points of the floor where the ray-traced truth is the same for `margin` around.
-fn settled(
+pub(super) fn settled(
     triangles: &[Triangle],
     unit: f64,
     margin: f64,
@@ -94,7 +93,7 @@ fn settled(
         .collect()
 }
 
-fn assert_right(wanted: &[(DVec3, bool)], seen: &[f32], what: &str) {
+pub(super) fn assert_right(wanted: &[(DVec3, bool)], seen: &[f32], what: &str) {
     let dark = wanted.iter().filter(|(_, dark)| *dark).count();
     assert!(
         dark > 0 && dark < wanted.len(),
@@ -111,7 +110,7 @@ fn assert_right(wanted: &[(DVec3, bool)], seen: &[f32], what: &str) {
     }
 }
 
-fn points(wanted: &[(DVec3, bool)]) -> Vec<Point> {
+pub(super) fn points(wanted: &[(DVec3, bool)]) -> Vec<Point> {
     wanted
         .iter()
         .map(|(place, _)| Point::rounded(*place, DVec3::Y))
@@ -340,91 +339,4 @@ fn an_empty_world_is_empty_at_any_origin() {
             assert_whole(&report, &format!("{origin}"));
         }
     }
-}
-
-/// Lights are three units above the floor, as exactly as the spacing of their f64 position allows;
-/// others are as far away as their origin.
-#[test]
-fn lamps_of_any_origin_are_right_or_refused() {
-    let gpu = gpu();
-    let meshes = meshes(1.0);
-    let scene = Scene::new(gpu, &meshes);
-    let casters = scene.list();
-    let omni = OmniShadowDescriptor {
-        map_size: 256,
-        ..Default::default()
-    };
-    let mut omni = OmniShadow::new(&gpu.device, &omni).expect("a valid lamp");
-    let spot = SpotShadowDescriptor {
-        map_size: 256,
-        ..Default::default()
-    };
-    let mut spot = SpotShadow::new(&gpu.device, &spot).expect("a valid lamp");
-    let asks = [omni.maps(), spot.maps()].map(|source| Ask::light(gpu, source));
-    let mut right = 0;
-    for place in origins() {
-        for (origin, position_world) in [(place, place + DVec3::Y * 3.0), (DVec3::ZERO, place)] {
-            let light = position_world - origin;
-            omni.invalidate();
-            omni.reset_history();
-            spot.invalidate();
-            spot.reset_history();
-            let omni_frame = OmniFrame {
-                origin,
-                light: OmniLight {
-                    position_world,
-                    range: f32::INFINITY,
-                },
-                camera: None,
-                casters: &casters,
-                receivers: &[],
-            };
-            let spot_frame = SpotFrame {
-                origin,
-                light: SpotLight {
-                    position_world,
-                    direction: Vec3::NEG_Y,
-                    outer_angle_radians: 1.1,
-                    range: f32::INFINITY,
-                },
-                camera: None,
-                casters: &casters,
-                receivers: &[],
-            };
-            let records = [
-                record_omni(gpu, &mut omni, &omni_frame),
-                record_spot(gpu, &mut spot, &spot_frame),
-            ];
-            for (index, record) in records.into_iter().enumerate() {
-                let what = format!("lamp {index} at {position_world}, origin {origin}");
-                let report = match record {
-                    Ok(report) => report,
-                    Err(ShadowError::ViewNotRepresentable { .. }) => {
-                        assert!(light.length() > 1e17, "{what} is refused");
-                        continue;
-                    }
-                    Err(error) => panic!("{what}: {error}"),
-                };
-                assert_whole(&report, &what);
-                if index == 0 {
-                    assert_finite(omni.maps().views(), omni.maps().view_uniforms(), &what);
-                } else {
-                    assert_finite(spot.maps().views(), spot.maps().view_uniforms(), &what);
-                }
-                // The test compares where the light is above the slab and the slab's shadow leaves
-                // some of the floor lit.
-                if light.distance(DVec3::Y * 3.0) > 0.5 {
-                    continue;
-                }
-                let views = report.views.iter();
-                let texel = views
-                    .map(|view| f64::from(view.texel_size_world.max_element()))
-                    .fold(0.0, f64::max);
-                let wanted = settled(&scene.triangles, 1.0, 3.0 * texel, |from| light - from);
-                assert_right(&wanted, &asks[index].points(gpu, &points(&wanted)), &what);
-                right += 1;
-            }
-        }
-    }
-    assert!(right > 100, "{right}");
 }

@@ -1,9 +1,11 @@
-//! Tests every filter under every bias on the device against the CPU reference, `wgpu_shadows::reference`.
+//! Tests every filter under every bias on the device against the CPU reference,
+//! `wgpu_shadows::reference`.
 //!
-//! A comparison is undecided where reference depth and texel are closer than f32 resolves. So the CPU reference is
-//! evaluated not once but nine times, at the receiver and at the corners of its rounding band (`fixtures/rounding.rs`),
-//! and the device's result must lie between the least and the greatest of these, up to the rounding of the weighted
-//! sum. Receivers for which they differ are *undecided*: the test proves little about them, and limits their share.
+//! A comparison is undecided where reference depth and texel are closer than f32 resolves. So the
+//! CPU reference is evaluated not once but nine times, at the receiver and at the corners of its
+//! rounding band (`fixtures/rounding.rs`), and the device's result must lie between the least and
+//! the greatest of these, up to the rounding of the weighted sum. Receivers for which they differ
+//! are *undecided*: the test proves little about them, and limits their share.
 
 use bytemuck::Zeroable;
 use glam::{DVec2, DVec3, Vec2, Vec3};
@@ -118,8 +120,9 @@ impl Lit {
 const LIGHT: Vec3 = Vec3::new(0.45, -1.0, 0.3);
 const BOX: Aabb = Aabb::new(Vec3::new(-5.0, -1.0, -5.0), Vec3::new(5.0, 4.0, 5.0));
 
-/// Returns random receivers: a quarter anywhere, also far beyond the box, with any normal; a quarter on the floor along
-/// the borders of shadows; the rest on surfaces, mostly with the normal of the side that the light sees.
+/// Returns random receivers: a quarter anywhere, also far beyond the box, with any normal; a
+/// quarter on the floor along the borders of shadows; the rest on surfaces, mostly with the normal
+/// of the side that the light sees.
 pub(super) fn points(scene: &Scene, seed: u64) -> Vec<Point> {
     let mut random = Random::new(seed);
     let light = LIGHT.as_dvec3();
@@ -149,7 +152,8 @@ pub(super) fn place(point: &Point) -> (DVec3, DVec3) {
     (wide(point.position), wide(point.normal))
 }
 
-/// Returns whether a position is so close to a border of what the map covers that rounding decides on which side it is.
+/// Returns whether a position is so close to a border of what the map covers that rounding decides
+/// on which side it is.
 pub(super) fn at_border(view: &ShadowViewUniform, position: DVec3, band: &Band) -> bool {
     let (texel, depth) = texel_and_depth(view, position);
     let pair = |name| Vec2::from_array(member(view, name)).as_dvec2();
@@ -177,9 +181,10 @@ fn bounds(filter: Filter, map: &DepthLayer<'_>, receiver: &Receiver, band: &Band
     range
 }
 
-/// Returns the rounding error of the sum of comparisons: at most 64 products and sums, stretched by the sharpness. For
-/// the sampler's own comparison it is the step of its weights, whose number of bits depends on the adapter (8 on every
-/// desktop GPU and on llvmpipe, 4 at least by the specifications), once along each axis.
+/// Returns the rounding error of the sum of comparisons: at most 64 products and sums, stretched by
+/// the sharpness. For the sampler's own comparison it is the step of its weights, whose number of
+/// bits depends on the adapter (8 on every desktop GPU and on llvmpipe, 4 at least by the
+/// specifications), once along each axis.
 fn sum_error(gpu: &Gpu, filter: Filter) -> f64 {
     let rounding = f64::from(filter.sharpness()) * 80.0 * U;
     match filter {
@@ -239,7 +244,8 @@ fn compare(gpu: &Gpu, scene: &Scene, map_size: u32, filter: Filter, bias: Bias) 
 }
 
 impl Tally {
-    /// Returns what would make the comparison worthless: too few results of a kind, or too many that prove nothing.
+    /// Returns what would make the comparison worthless: too few results of a kind, or too many
+    /// that prove nothing.
     fn weakness(&self, filter: Filter) -> Option<String> {
         let weak = self.undecided > POINTS / 200
             || self.compared < POINTS * 9 / 10
@@ -256,8 +262,8 @@ fn visibilities_are_those_of_the_reference() {
     let mut failures = Vec::new();
     for filter in filters() {
         for bias in BIASES {
-            // The size is not a power of two, so that coordinates are rounded on their way to the sampler, and it is
-            // much larger than the kernel.
+            // The size is not a power of two, so that coordinates are rounded on their way to the
+            // sampler, and it is much larger than the kernel.
             let map_size = (93.0 + 9.0 * filter.reach_texels()) as u32;
             let tally = compare(gpu, &scene, map_size, filter, bias);
             if let Some(first) = tally.wrong.first() {
@@ -276,8 +282,9 @@ fn visibilities_are_those_of_the_reference() {
     );
 }
 
-/// A straight edge is sampled with each kernel: visibility rises from 0 to 1 over exactly twice the reach that the
-/// filter states (less where sharpened), never decreases in between, and is symmetric around the edge.
+/// A straight edge is sampled with each kernel: visibility rises from 0 to 1 over exactly twice the
+/// reach that the filter states (less where sharpened), never decreases in between, and is
+/// symmetric around the edge.
 #[test]
 fn kernels_are_even_and_reach_as_far_as_they_say() {
     const SIZE: u32 = 24;
@@ -315,13 +322,13 @@ fn kernels_are_even_and_reach_as_far_as_they_say() {
     let with_kernels = |filter: &Filter| filter.light_size() == 0.0;
     for filter in filters().filter(with_kernels) {
         let reach = filter.reach_texels();
-        // A texel has weight while its centre is nearer than the reach, and texels have their centres half a texel from
-        // the edge.
+        // A texel has weight while its centre is nearer than the reach, and texels have their
+        // centres half a texel from the edge.
         let ramp = reach - 0.5;
         let mut last = 0.0;
         for step in -600..=600 {
-            // These positions avoid the centres and borders of texels, where the result changes from one value to the
-            // next.
+            // These positions avoid the centres and borders of texels, where the result changes
+            // from one value to the next.
             let x = f64::from(step) / 100.0 + 0.003;
             let (here, there) = (seen(filter, EDGE + x), seen(filter, EDGE - x));
             assert!((here + there - 1.0).abs() < 1e-12, "{filter:?} at {x}");

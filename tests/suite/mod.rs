@@ -28,6 +28,7 @@ mod distance_limit;
 mod emitted_wgsl;
 mod engine_wgsl;
 mod errors;
+mod far_origin_lamps;
 mod far_origins;
 mod filter_parity;
 mod fit_images;
@@ -48,6 +49,7 @@ mod mirrored_views;
 mod never_stale;
 mod omni;
 mod omni_input;
+mod omni_seams;
 
 mod out_of_range;
 mod own_layout;

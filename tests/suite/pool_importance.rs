@@ -21,9 +21,8 @@ const LEAST_SHARE: f64 = 1.0 / 4096.0;
 ///
 /// Let `w` be its weight, `W` the greatest, and `n` their number. From the frame `K` on in which
 /// `w (1 + K) > (n - 1) W`, a light that precedes it has waited for at least `n - 1` frames, since
-/// otherwise its own product is at most `(n
-/// - 1) W`. So in `n -
-///   1` such frames all the others are refreshed, once each, and then none is left to precede it.
+/// otherwise its own product is at most `(n - 1) W`. So in `n - 1` such frames all the others are
+/// refreshed, once each, and then none is left to precede it.
 fn longest_wait(importances: &[f32], light: usize) -> usize {
     let greatest = importances.iter().copied().fold(0.0, f32::max);
     let weight = f64::from(importances[light]).max(f64::from(greatest) * LEAST_SHARE);

@@ -25,15 +25,13 @@ fn by_samples(gpu: &Gpu, lit: &Lit, points: &[Point]) -> Vec<f32> {
         modules.next().expect("a module of the table").source
     };
     let map = "var shadow_map_sun: texture_depth_2d_array;";
-    let gathers = ["texels", "texels_by_offsets"].map(source);
-    let gathers = gathers
-        .into_iter()
-        .find(|text| bindings.wgsl().contains(text));
-    let gathers = gathers.expect("a module that gathers");
-    assert!(bindings.wgsl().contains(map), "{map}");
+    for part in [source("texels"), map] {
+        assert!(bindings.wgsl().contains(part), "{part}");
+    }
     let text = bindings
         .wgsl()
-        .replace(gathers, source("texels_by_samples"))
+        .replace(source("texels_by_offsets"), source("texel_blocks"))
+        .replace(source("texels"), source("texels_by_samples"))
         .replace(map, "var shadow_map_sun: texture_2d_array<f32>;");
     let types = [
         wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering),

@@ -38,7 +38,8 @@ fn shadow_tint_fragment(vertex: ShadowFullscreenVertex) -> @location(0) vec4<f32
     // `texels_by_samples` describes.
     let size = vec2<f32>(textureDimensions(shadow_tint_depth));
     let texel = min(floor(vertex.uv * size), size - 1.0);
-    let depth = textureSampleLevel(shadow_tint_depth, shadow_tint_sampler, (texel + 0.5) / size, 0.0).x;
+    let uv = (texel + 0.5) / size;
+    let depth = textureSampleLevel(shadow_tint_depth, shadow_tint_sampler, uv, 0.0).x;
     let ndc = vec2<f32>(vertex.uv.x * 2.0 - 1.0, 1.0 - vertex.uv.y * 2.0);
     let homogeneous = shadow_tint.render_from_clip * vec4<f32>(ndc, depth, 1.0);
     // A depth at either end of the range, whichever convention the camera has, means that nothing

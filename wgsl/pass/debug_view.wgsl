@@ -1,11 +1,11 @@
-// Depth maps as grey levels: black at the light, white at the end of its range and where nothing casts. The range is here that
-// up to which receivers are seen.
+// Depth maps as grey levels: black at the light, white at the end of its range and where nothing
+// casts. The range is here that up to which receivers are seen.
 //
 // CPU counterpart: src/debug/view.rs. Requires: view, cube_face, fullscreen.
 
 struct ShadowDebugView {
-    // Holds 1 in x where depth is near / distance (a local light), and 0 where it is linear (a directional one). It is
-    // a vector, since uniforms are multiples of 16 bytes in OpenGL ES 3.0.
+    // Holds 1 in x where depth is near / distance (a local light), and 0 where it is linear (a
+    // directional one). It is a vector, since uniforms are multiples of 16 bytes in OpenGL ES 3.0.
     local: vec4<u32>,
 }
 
@@ -14,14 +14,16 @@ struct ShadowDebugView {
 @group(0) @binding(2) var shadow_debug_map: texture_2d_array<f32>;
 @group(0) @binding(3) var shadow_debug_sampler: sampler;
 
-// Returns the distance from the light along the ray through `texel` (from the middle), as a fraction of the
-// light's reach. `tangents` is the ray's position in the plane of the map of a local light.
+// Returns the distance from the light along the ray through `texel` (from the middle), as a
+// fraction of the light's reach. `tangents` is the ray's position in the plane of the map of a
+// local light.
 fn shadow_debug_grey(view: ShadowViewUniform, texel: vec2<f32>, tangents: vec2<f32>) -> f32 {
     let last = view.map_size - 1.0;
     let inside = clamp(floor(texel + view.mapping.middle), vec2<f32>(0.0), vec2<f32>(last));
-    let center = (inside + 0.5) * view.uv_per_texel;
-    // This is a sample, since GLSL ES 3.00 has no gather, and since loads fail as `texels_by_samples` describes.
-    let depth = textureSampleLevel(shadow_debug_map, shadow_debug_sampler, center, view.layer, 0.0).x;
+    let uv = (inside + 0.5) * view.uv_per_texel;
+    // This is a sample, since GLSL ES 3.00 has no gather, and since loads fail as
+    // `texels_by_samples` describes.
+    let depth = textureSampleLevel(shadow_debug_map, shadow_debug_sampler, uv, view.layer, 0.0).x;
     if shadow_debug.local.x == 0u {
         return 1.0 - depth;
     }
@@ -43,8 +45,8 @@ fn shadow_debug_layer(vertex: ShadowFullscreenVertex) -> @location(0) vec4<f32> 
     return vec4<f32>(vec3<f32>(shadow_debug_grey(view, texel, tangents)), 1.0);
 }
 
-// Draws the six faces of a cube, unfolded around the one that looks along -z: +y above it, -x to the left, +x to the
-// right, +z outermost to the right, and -y below.
+// Draws the six faces of a cube, unfolded around the one that looks along -z: +y above it, -x to
+// the left, +x to the right, +z outermost to the right, and -y below.
 @fragment
 fn shadow_debug_cross(vertex: ShadowFullscreenVertex) -> @location(0) vec4<f32> {
     let cell = vec2<i32>(floor(vertex.uv * vec2<f32>(4.0, 3.0)));
@@ -66,8 +68,8 @@ fn shadow_debug_cross(vertex: ShadowFullscreenVertex) -> @location(0) vec4<f32> 
     }
     let face = shadow_face(ray);
     let view = shadow_debug_views[face.index];
-    let light = shadow_along_face(face, ray);
-    let tangents = light.xy / -light.z;
+    let ray_light = shadow_along_face(face, ray);
+    let tangents = ray_light.xy / -ray_light.z;
     let texel = tangents * view.mapping.texel_scale + view.mapping.texel_offset;
     if !all(abs(texel) < view.mapping.inner) {
         return vec4<f32>(1.0);

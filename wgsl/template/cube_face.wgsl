@@ -7,8 +7,9 @@ fn shadow_place_of_NAME(INDEX: u32, position: vec3<f32>) -> ShadowPlace {
     let view = FIRST_VIEW + face.index;
     let mapping = shadow_views_NAME[view].mapping;
     let grid = shadow_views_NAME[view].grid;
-    let light = shadow_along_face(face, from_light);
-    var place = shadow_local_place(shadow_views_NAME[ANY_VIEW], mapping, view, grid, light);
+    let position_light = shadow_along_face(face, from_light);
+    let light = shadow_views_NAME[ANY_VIEW];
+    var place = shadow_local_place(light, mapping, view, grid, position_light);
     place.inside = place.inside & (view < VIEW_COUNT);
     return place;
 }

@@ -20,9 +20,9 @@ fn shadow_NAME(INDEX: u32, position: vec3<f32>, normal: vec3<f32>) -> f32 {
         let sampled = shadow_direction_on_SURFACE(from_light, NORMAL, offset) + anchor;
         let place = shadow_place_of_NAME(INDEX, sampled);
         if place.inside {
-            let along = shadow_axes_of_NAME(INDEX, sampled, normal);
+            let normal_light = shadow_axes_of_NAME(INDEX, sampled, normal);
             let mapping = shadow_views_NAME[place.layer].mapping;
-            let receiver = shadow_BIAS(shadow_views_NAME[ANY_VIEW], mapping, place, along);
+            let receiver = shadow_BIAS(shadow_views_NAME[ANY_VIEW], mapping, place, normal_light);
             lit += shadow_FILTER(shadow_map_NAME, SAMPLER, receiver);
         } else {
             lit += 1.0;

@@ -9,7 +9,7 @@ use crate::receive::{Bias, Filter, ShadowViewUniform};
 /// Is the steepest gradient in depth per texel: `SHADOW_MAX_GRADIENT` of `wgsl/bias_plane.wgsl`.
 const MAX_GRADIENT: f64 = 1e4;
 
-/// Is `SHADOW_POSITION_ROUNDING` of `wgsl/rounding.wgsl`.
+/// Is `SHADOW_POSITION_ROUNDING` of `wgsl/raised_plane.wgsl`.
 const POSITION_ROUNDING: f64 = 2.0 * f32::EPSILON as f64;
 
 /// Is the least weight of a cascade. It is above 0, so that every position within a cascade has a
@@ -26,14 +26,16 @@ pub fn receiver(
     normal: DVec3,
 ) -> Receiver {
     let map = Map::of(view);
-    let light = map.light_from_render(position - map.anchor);
-    let normal = map.light_from_render(normal);
+    let position_light = map.light_from_render(position - map.anchor);
+    let normal_light = map.light_from_render(normal);
     let moved = match (bias.scheme(filter), map.is_local) {
-        (BiasScheme::Plane, false) => directional_plane(&map, light, normal),
-        (BiasScheme::Plane, true) => local_plane(&map, light, normal),
-        (BiasScheme::NormalOffset, false) => directional_normal_offset(&map, light, normal),
-        (BiasScheme::NormalOffset, true) => local_normal_offset(&map, light, normal),
-        (BiasScheme::Manual, _) => manual(&map, light, normal),
+        (BiasScheme::Plane, false) => directional_plane(&map, position_light, normal_light),
+        (BiasScheme::Plane, true) => local_plane(&map, position_light, normal_light),
+        (BiasScheme::NormalOffset, false) => {
+            directional_normal_offset(&map, position_light, normal_light)
+        }
+        (BiasScheme::NormalOffset, true) => local_normal_offset(&map, position_light, normal_light),
+        (BiasScheme::Manual, _) => manual(&map, position_light, normal_light),
     };
     Receiver {
         texel: moved.texel_from_middle + Vec2::from_array(view.mapping.middle).as_dvec2(),
@@ -50,23 +52,23 @@ pub fn receiver(
 /// front of it and within its cone and range. A position that no view covers is lit.
 pub fn holds(view: &ShadowViewUniform, position: DVec3) -> bool {
     let map = Map::of(view);
-    let light = map.light_from_render(position - map.anchor);
-    let texel = map.texel_from_middle(light);
+    let position_light = map.light_from_render(position - map.anchor);
+    let texel = map.texel_from_middle(position_light);
     let inner = Vec2::from_array(view.mapping.inner).as_dvec2();
     let within = texel.abs().cmplt(inner).all();
     if map.is_local {
-        let tangents = light.truncate() / light.z;
+        let tangents = position_light.truncate() / position_light.z;
         within
-            && light.z < 0.0
-            && light.length_squared() < f64::from(view.range_squared)
+            && position_light.z < 0.0
+            && position_light.length_squared() < f64::from(view.range_squared)
             && tangents.length_squared() < f64::from(view.cone_tangent_squared)
     } else {
-        within && map.depth(light) >= 0.0
+        within && map.depth(position_light) >= 0.0
     }
 }
 
-/// Returns the weight, from 1/4096 to 1, of a cascade at a `position` (render space) that it covers,
-/// where cascades blend. It is the `shadow_blend_weight` of `wgsl/place.wgsl`.
+/// Returns the weight, from 1/4096 to 1, of a cascade at a `position` (render space) that it
+/// covers, where cascades blend. It is the `shadow_blend_weight` of `wgsl/place.wgsl`.
 pub fn weight(view: &ShadowViewUniform, position: DVec3) -> f64 {
     let map = Map::of(view);
     let texel = map.texel_from_middle(map.light_from_render(position - map.anchor));
@@ -127,21 +129,21 @@ impl<'a> Map<'a> {
     }
 
     /// Returns where a position of light space falls in the map, in texels from its middle.
-    fn texel_from_middle(&self, light: DVec3) -> DVec2 {
+    fn texel_from_middle(&self, position_light: DVec3) -> DVec2 {
         let plane = if self.is_local {
-            light.truncate() / -light.z
+            position_light.truncate() / -position_light.z
         } else {
-            light.truncate()
+            position_light.truncate()
         };
         plane * self.texel_scale + self.texel_offset
     }
 
     /// Returns the ndc depth of a position of light space.
-    fn depth(&self, light: DVec3) -> f64 {
+    fn depth(&self, position_light: DVec3) -> f64 {
         if self.is_local {
-            self.depth_scale / -light.z
+            self.depth_scale / -position_light.z
         } else {
-            light.z * self.depth_scale + f64::from(self.view.depth_offset)
+            position_light.z * self.depth_scale + f64::from(self.view.depth_offset)
         }
     }
 
@@ -151,74 +153,88 @@ impl<'a> Map<'a> {
     }
 
     /// Returns the world distance by which a plane at a signed distance of `height` from a local
-    /// light is moved toward it for rounding, as `shadow_local_rounding` of `wgsl/rounding.wgsl`
-    /// does.
-    fn local_rounding(&self, light: DVec3, height: f64) -> f64 {
-        let rounding =
-            f64::from(self.view.offset_world) + POSITION_ROUNDING * light.abs().max_element();
+    /// light is moved toward it for rounding, as `shadow_local_rounding` of
+    /// `wgsl/raised_plane.wgsl` does.
+    fn local_rounding(&self, position_light: DVec3, height: f64) -> f64 {
+        let rounding = f64::from(self.view.offset_world)
+            + POSITION_ROUNDING * position_light.abs().max_element();
         rounding.min(0.5 * height.abs())
     }
 
     /// Returns a receiver that a bias has moved to `light`.
-    fn moved(&self, light: DVec3, slack: f64, gradient: DVec2) -> Moved {
+    fn moved(&self, position_light: DVec3, slack: f64, gradient: DVec2) -> Moved {
         Moved {
-            texel_from_middle: self.texel_from_middle(light),
-            depth: self.depth(light) + slack,
+            texel_from_middle: self.texel_from_middle(position_light),
+            depth: self.depth(position_light) + slack,
             gradient,
         }
     }
 }
 
-fn directional_plane(map: &Map<'_>, light: DVec3, normal: DVec3) -> Moved {
-    let rise = normal.truncate() * map.texel_size;
+fn directional_plane(map: &Map<'_>, position_light: DVec3, normal_light: DVec3) -> Moved {
+    let rise = normal_light.truncate() * map.texel_size;
     let offset = map.offset_texels * rise.abs().element_sum() + map.rounding;
-    let gradient = if normal.z.abs() > 0.0 {
-        limited(-rise / normal.z * map.depth_scale, MAX_GRADIENT)
+    let gradient = if normal_light.z.abs() > 0.0 {
+        limited(-rise / normal_light.z * map.depth_scale)
     } else {
         DVec2::ZERO
     };
-    map.moved(light + normal * offset, map.slack(gradient), gradient)
+    map.moved(
+        position_light + normal_light * offset,
+        map.slack(gradient),
+        gradient,
+    )
 }
 
-fn directional_normal_offset(map: &Map<'_>, light: DVec3, normal: DVec3) -> Moved {
-    let across = normal.truncate().abs() * map.texel_size;
+fn directional_normal_offset(map: &Map<'_>, position_light: DVec3, normal_light: DVec3) -> Moved {
+    let across = normal_light.truncate().abs() * map.texel_size;
     let offset = map.offset_texels * across.element_sum() + map.rounding;
-    map.moved(light + normal * offset, map.depth_error, DVec2::ZERO)
+    map.moved(
+        position_light + normal_light * offset,
+        map.depth_error,
+        DVec2::ZERO,
+    )
 }
 
-fn local_plane(map: &Map<'_>, light: DVec3, normal: DVec3) -> Moved {
-    let height = normal.dot(light);
-    let rounding = map.local_rounding(light, height);
-    let rise = normal.truncate() * map.texel_size;
-    let wanted = map.offset_texels * -light.z * rise.abs().element_sum();
+fn local_plane(map: &Map<'_>, position_light: DVec3, normal_light: DVec3) -> Moved {
+    let height = normal_light.dot(position_light);
+    let rounding = map.local_rounding(position_light, height);
+    let rise = normal_light.truncate() * map.texel_size;
+    let wanted = map.offset_texels * -position_light.z * rise.abs().element_sum();
     let offset = wanted.min(0.5 * (height.abs() - rounding));
-    let plane = raised_plane(map, light, normal, &Lift { rounding, offset }, MAX_GRADIENT);
+    let plane = raised_plane(
+        map,
+        position_light,
+        normal_light,
+        &Lift { rounding, offset },
+    );
+    let gradient = limited(plane.gradient);
     Moved {
-        depth: plane.depth + map.slack(plane.gradient),
+        depth: plane.depth + map.slack(gradient),
+        gradient,
         ..plane
     }
 }
 
-fn local_normal_offset(map: &Map<'_>, light: DVec3, normal: DVec3) -> Moved {
-    let height = normal.dot(light);
-    let rounding = map.local_rounding(light, height);
-    let rise = normal.truncate() * map.texel_size;
+fn local_normal_offset(map: &Map<'_>, position_light: DVec3, normal_light: DVec3) -> Moved {
+    let height = normal_light.dot(position_light);
+    let rounding = map.local_rounding(position_light, height);
+    let rise = normal_light.truncate() * map.texel_size;
     let per_w = map.offset_texels * rise.abs().element_sum();
-    let growth = per_w * (-normal.z).max(0.0);
-    let offset = per_w * -light.z * (1.0 + 2.0 * growth);
+    let growth = per_w * (-normal_light.z).max(0.0);
+    let offset = per_w * -position_light.z * (1.0 + 2.0 * growth);
     if growth >= 0.5 || offset + rounding >= height.abs() {
         return Moved {
-            texel_from_middle: map.texel_from_middle(light),
+            texel_from_middle: map.texel_from_middle(position_light),
             depth: 2.0,
             gradient: DVec2::ZERO,
         };
     }
     let plane = raised_plane(
         map,
-        light,
-        normal,
+        position_light,
+        normal_light,
         &Lift { rounding, offset },
-        f64::INFINITY,
     );
     Moved {
         depth: plane.depth + map.depth_error,
@@ -236,44 +252,37 @@ struct Lift {
 }
 
 /// Returns the receiver on its tangent plane under a local light, after the plane has been moved.
-/// The receiver moves across the map by the tangents of the offset. Components of the gradient are
-/// at most `max_gradient`.
-fn raised_plane(
-    map: &Map<'_>,
-    light: DVec3,
-    normal: DVec3,
-    lift: &Lift,
-    max_gradient: f64,
-) -> Moved {
-    let height = normal.dot(light);
+/// The receiver moves across the map by the tangents of the offset.
+fn raised_plane(map: &Map<'_>, position_light: DVec3, normal_light: DVec3, lift: &Lift) -> Moved {
+    let height = normal_light.dot(position_light);
     let moved = height - lift.rounding.copysign(height) + lift.offset;
-    let shift = normal.truncate() * (lift.offset / -light.z) * map.texel_scale;
-    let depth = map.depth(light);
+    let shift = normal_light.truncate() * (lift.offset / -position_light.z) * map.texel_scale;
+    let depth = map.depth(position_light);
     let (gradient, raised) = if moved.abs() > 0.0 {
-        let gradient = normal.truncate() * map.texel_size * map.depth_scale / moved;
-        (limited(gradient, max_gradient), depth * height / moved)
+        let gradient = normal_light.truncate() * map.texel_size * map.depth_scale / moved;
+        (gradient, depth * height / moved)
     } else {
         (DVec2::ZERO, depth)
     };
     Moved {
-        texel_from_middle: map.texel_from_middle(light) + shift,
+        texel_from_middle: map.texel_from_middle(position_light) + shift,
         depth: raised + gradient.dot(shift) + depth * map.rounding,
         gradient,
     }
 }
 
-fn manual(map: &Map<'_>, light: DVec3, normal: DVec3) -> Moved {
+fn manual(map: &Map<'_>, position_light: DVec3, normal_light: DVec3) -> Moved {
     let toward_light = if map.is_local {
-        -light.normalize()
+        -position_light.normalize()
     } else {
         DVec3::Z
     };
-    let slope = f64::from(map.view.manual_slope) * (1.0 - normal.dot(toward_light));
+    let slope = f64::from(map.view.manual_slope) * (1.0 - normal_light.dot(toward_light));
     let distance = slope.max(f64::from(map.view.manual_constant));
-    let moved = map.moved(light + toward_light * distance, 0.0, DVec2::ZERO);
-    if map.is_local && distance >= light.length() {
+    let moved = map.moved(position_light + toward_light * distance, 0.0, DVec2::ZERO);
+    if map.is_local && distance >= position_light.length() {
         return Moved {
-            texel_from_middle: map.texel_from_middle(light),
+            texel_from_middle: map.texel_from_middle(position_light),
             depth: 2.0,
             ..moved
         };
@@ -281,7 +290,7 @@ fn manual(map: &Map<'_>, light: DVec3, normal: DVec3) -> Moved {
     moved
 }
 
-/// Returns a gradient whose components are at most `most`.
-fn limited(gradient: DVec2, most: f64) -> DVec2 {
-    gradient.clamp(DVec2::splat(-most), DVec2::splat(most))
+/// Returns a gradient whose components are finite.
+fn limited(gradient: DVec2) -> DVec2 {
+    gradient.clamp(DVec2::splat(-MAX_GRADIENT), DVec2::splat(MAX_GRADIENT))
 }

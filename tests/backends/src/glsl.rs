@@ -47,8 +47,8 @@ impl Device {
         }
     }
 
-    /// Returns whether shaders can gather from depth textures. Without the extension, naga 30 gives the
-    /// gather arguments that no version of GLSL has, and the driver refuses it.
+    /// Returns whether shaders can gather from depth textures. Without the extension, naga 30 gives
+    /// the gather arguments that no version of GLSL has, and the driver refuses it.
     pub const fn gathers(self) -> bool {
         let has_gather = match self.version {
             Version::Desktop(version) => version >= 400,

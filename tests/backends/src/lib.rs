@@ -1,5 +1,5 @@
-//! Writes WGSL in the languages of wgpu's backends, with the options of `wgpu-hal` 30, so that what a
-//! backend would refuse is seen on machines that do not have it.
+//! Writes WGSL in the languages of wgpu's backends, with the options of `wgpu-hal` 30, so that what
+//! a backend would refuse is seen on machines that do not have it.
 //!
 //! ```text
 //! spirv.rs   Vulkan

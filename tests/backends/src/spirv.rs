@@ -1,4 +1,5 @@
-//! Writes SPIR-V as wgpu's Vulkan backend does (`wgpu-hal/src/vulkan/adapter.rs`, `device_from_raw`).
+//! Writes SPIR-V as wgpu's Vulkan backend does (`wgpu-hal/src/vulkan/adapter.rs`,
+//! `device_from_raw`).
 
 use naga::back::spv::{self, Capability};
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};

@@ -1,5 +1,5 @@
-//! Tests by the Khronos Group's compiler that the texts for DirectX 12 and OpenGL are valid. It reads HLSL and GLSL; what
-//! a vendor's compiler makes of them is not tested.
+//! Tests by the Khronos Group's compiler that the texts for DirectX 12 and OpenGL are valid. It
+//! reads HLSL and GLSL; what a vendor's compiler makes of them is not tested.
 
 use std::fs;
 use std::path::Path;
@@ -51,8 +51,8 @@ fn hlsl_compiles() {
     report(&failures);
 }
 
-/// Lists the oldest desktop OpenGL and the newest OpenGL ES, both without the extension that gathers need: Debian 12's
-/// compiler does not know it. WebGL 2 is tested in a browser.
+/// Lists the oldest desktop OpenGL and the newest OpenGL ES, both without the extension that
+/// gathers need: Debian 12's compiler does not know it. WebGL 2 is tested in a browser.
 const DEVICES: [(&str, glsl::Device); 2] = [
     ("gl-330", glsl::Device::desktop(330, false)),
     ("es-320", glsl::Device::embedded(320, false)),
@@ -81,7 +81,8 @@ fn glsl_compiles() {
             Ok(())
         };
         all_failures.extend(failures(&by_samples, write));
-        // The compiler takes longer to start than to read a text. It names the files that it refuses.
+        // The compiler takes longer to start than to read a text. It names the files that it
+        // refuses.
         for files in files.chunks(50) {
             let files: Vec<_> = files.iter().map(String::as_str).collect();
             all_failures.extend(COMPILER.check(&files, &[]).err());

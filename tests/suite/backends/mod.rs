@@ -1,5 +1,5 @@
-//! Tests what everything that the library emits becomes on wgpu's backends, with the options with which wgpu writes it.
-//! None of these tests depends on the backend of the run.
+//! Tests what everything that the library emits becomes on wgpu's backends, with the options with
+//! which wgpu writes it. None of these tests depends on the backend of the run.
 
 mod compiled;
 mod spirv;

@@ -1,4 +1,5 @@
-//! Tests by the Khronos Group's validator that the SPIR-V is valid: drivers trust it without a check.
+//! Tests by the Khronos Group's validator that the SPIR-V is valid: drivers trust it without a
+//! check.
 
 use shadow_backends::spirv::{self, Target};
 

@@ -1,5 +1,5 @@
-//! Tests that naga writes HLSL, Metal's language and GLSL of everything that the library emits, in every version that wgpu
-//! asks for. No compiler of those languages reads it here.
+//! Tests that naga writes HLSL, Metal's language and GLSL of everything that the library emits, in
+//! every version that wgpu asks for. No compiler of those languages reads it here.
 
 use shadow_backends::hlsl::ShaderModel;
 use shadow_backends::{Pipeline, glsl, hlsl, msl};
@@ -7,8 +7,8 @@ use shadow_support::compositions::Composition;
 
 use crate::suite::backends::{all, failures, report};
 
-/// The shader model is 5.1 where the old compiler is used, and 6.0 to 6.9 with the new one. Several views in one pass
-/// need 6.1.
+/// The shader model is 5.1 where the old compiler is used, and 6.0 to 6.9 with the new one. Several
+/// views in one pass need 6.1.
 #[test]
 fn hlsl_is_written() {
     let failures = failures(all(), |composition, pipeline| {
@@ -25,8 +25,8 @@ fn hlsl_is_written() {
     report(&failures);
 }
 
-/// wgpu takes the newest version that the system knows: 1.2 on macOS 10.12, and 4.0 on macOS 26. Several views in one
-/// pass need 2.2.
+/// wgpu takes the newest version that the system knows: 1.2 on macOS 10.12, and 4.0 on macOS 26.
+/// Several views in one pass need 2.2.
 #[test]
 fn msl_is_written() {
     let failures = failures(all(), |composition, pipeline| {
@@ -43,7 +43,8 @@ fn msl_is_written() {
     report(&failures);
 }
 
-/// Lists the oldest and the newest versions of OpenGL with which wgpu has a device, and those between that can do more.
+/// Lists the oldest and the newest versions of OpenGL with which wgpu has a device, and those
+/// between that can do more.
 const DEVICES: [glsl::Device; 9] = [
     glsl::Device::desktop(330, false),
     glsl::Device::desktop(400, true),

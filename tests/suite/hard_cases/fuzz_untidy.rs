@@ -16,6 +16,7 @@ use shadow_support::triangle::{Triangle, occluded};
 use wgpu_shadows::report::ViewReport;
 use wgpu_shadows::{Aabb, DirectionalShadowDescriptor, ShadowCaster};
 
+use super::fuzz_grounds::{eye, ground};
 use super::fuzz_values::run;
 use super::stage::{Sun, Verdict, shaped, shining};
 use super::table;
@@ -49,20 +50,6 @@ struct Coarseness {
 }
 
 fn untidy() -> impl Strategy<Value = Untidy> {
-    let half = (0.0..5.0_f64).prop_map(|exponent| 10_f64.powf(exponent) as f32);
-    let thickness = prop_oneof![Just(0.0_f32), 0.001..5.0_f32];
-    let corner = (
-        -1.5..1.0_f32,
-        prop_oneof![Just(0.0_f32), -0.05..0.0_f32],
-        -1.5..1.0_f32,
-    );
-    let size = (0.05..0.8_f32, 0.2..1.5_f32, 0.05..0.8_f32);
-    let boxes = prop::collection::vec((corner, size), 1..4).prop_map(|boxes| {
-        let boxes = boxes.into_iter();
-        boxes
-            .map(|(corner, size)| (Vec3::from(corner), Vec3::from(size)))
-            .collect()
-    });
     let light = (0.25..1.5, 0.0..std::f64::consts::TAU).prop_map(|(height, side): (f64, f64)| {
         DVec3::new(
             height.cos() * side.cos(),
@@ -70,11 +57,6 @@ fn untidy() -> impl Strategy<Value = Untidy> {
             height.cos() * side.sin(),
         )
     });
-    let eye = (2.0..5.0, 0.8..4.0, 0.0..std::f64::consts::TAU).prop_map(
-        |(away, height, side): (f64, f64, f64)| {
-            DVec3::new(away * side.cos(), height, away * side.sin())
-        },
-    );
     let dome = prop::option::of(prop_oneof![Just(200.0_f32), Just(1e4_f32), Just(1e6_f32)]);
     let far_too_large = (5.0..9.0_f64).prop_map(|exponent| 10_f64.powf(exponent) as f32);
     let wild = prop::option::of(prop_oneof![
@@ -82,8 +64,8 @@ fn untidy() -> impl Strategy<Value = Untidy> {
         Just(f32::INFINITY),
         far_too_large
     ]);
-    (half, thickness, boxes, light, eye, dome, wild).prop_map(
-        |(half, thickness, boxes, light, eye, dome, wild)| Untidy {
+    (ground(), light, eye(), dome, wild).prop_map(
+        |((half, thickness, boxes), light, eye, dome, wild)| Untidy {
             half,
             thickness,
             boxes,

@@ -14,6 +14,7 @@ use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 
 use super::endless_lamps::{lift, nearer};
+use super::fuzz_grounds::{eye, ground};
 use super::fuzz_values::run;
 use super::stage::scene;
 use super::table;
@@ -39,29 +40,10 @@ struct Lit {
 }
 
 fn lit() -> impl Strategy<Value = Lit> {
-    let half = (0.0..5.0_f64).prop_map(|exponent| 10_f64.powf(exponent) as f32);
-    let thickness = prop_oneof![Just(0.0_f32), 0.001..5.0_f32];
-    let corner = (
-        -1.5..1.0_f32,
-        prop_oneof![Just(0.0_f32), -0.05..0.0_f32],
-        -1.5..1.0_f32,
-    );
-    let size = (0.05..0.8_f32, 0.2..1.5_f32, 0.05..0.8_f32);
-    let boxes = prop::collection::vec((corner, size), 1..4).prop_map(|boxes| {
-        let boxes = boxes.into_iter();
-        boxes
-            .map(|(corner, size)| (Vec3::from(corner), Vec3::from(size)))
-            .collect()
-    });
     let light = (-1.0..1.0, 2.0..4.0, -1.0..1.0).prop_map(DVec3::from);
-    let eye = (2.0..5.0, 0.8..4.0, 0.0..std::f64::consts::TAU).prop_map(
-        |(away, height, side): (f64, f64, f64)| {
-            DVec3::new(away * side.cos(), height, away * side.sin())
-        },
-    );
     let shade = (0.03..0.3, any::<bool>());
-    (half, thickness, boxes, light, shade, eye).prop_map(
-        |(half, thickness, boxes, light, (shade, one_mesh), eye)| Lit {
+    (ground(), light, shade, eye()).prop_map(
+        |((half, thickness, boxes), light, (shade, one_mesh), eye)| Lit {
             half,
             thickness,
             boxes,

@@ -14,6 +14,7 @@ mod far_lamps;
 mod fuzz;
 mod fuzz_bindings;
 mod fuzz_casters;
+mod fuzz_grounds;
 mod fuzz_pools;
 mod fuzz_reference;
 mod fuzz_untidy;

@@ -1,4 +1,5 @@
-//! Defines what is compared: anything that fills maps and provides `shadow_light(position, normal)`.
+//! Defines what is compared: anything that fills maps and provides
+//! `shadow_light(position, normal)`.
 
 use glam::{DMat4, DVec2, DVec3, Vec3};
 use wgpu_shadows::{ShadowError, ShadowView};
@@ -13,7 +14,8 @@ pub trait Technique {
     /// Records the passes that fill the maps, all of them again.
     fn record(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) -> Result<(), ShadowError>;
 
-    /// Returns WGSL with `shadow_light(position: vec3<f32>, normal: vec3<f32>) -> f32` and what it reads, in group 1.
+    /// Returns WGSL with `shadow_light(position: vec3<f32>, normal: vec3<f32>) -> f32` and what it
+    /// reads, in group 1.
     fn lookup(&self) -> Lookup<'_>;
 
     /// Returns what the map's texels cover.
@@ -22,7 +24,8 @@ pub trait Technique {
     /// Returns what the last recording took, and what a lookup takes.
     fn cost(&self) -> Cost;
 
-    /// Returns the number of texels to either side of an edge within which errors count as the edge's own.
+    /// Returns the number of texels to either side of an edge within which errors count as the
+    /// edge's own.
     fn band_texels(&self) -> f64;
 
     /// Returns by how many world units the band is wider, for filters whose width is given in them.
@@ -103,7 +106,8 @@ impl Footprint {
         Self { views }
     }
 
-    /// Returns the world size of a texel across the light's rays, at a position; that of the first view that covers it.
+    /// Returns the world size of a texel across the light's rays, at a position; that of the first
+    /// view that covers it.
     pub fn texel_world(&self, place: DVec3) -> Option<f64> {
         self.views.iter().find_map(|view| view.texel_world(place))
     }

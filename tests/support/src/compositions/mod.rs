@@ -1,5 +1,5 @@
-//! Lists the shaders of the library as an engine compiles them: every lookup that it emits, with the
-//! stages of a pipeline around it, and the passes that it draws itself.
+//! Lists the shaders of the library as an engine compiles them: every lookup that it emits, with
+//! the stages of a pipeline around it, and the passes that it draws itself.
 
 mod kind;
 
@@ -24,7 +24,8 @@ pub struct Composition {
 
 const STAGES: &str = include_str!("stages.wgsl");
 
-const BIASES: [Bias; 3] = [
+/// Lists the biases.
+pub const BIASES: [Bias; 3] = [
     Bias::Auto,
     Bias::NormalOffset,
     Bias::Manual {
@@ -45,13 +46,10 @@ const DIRECTIONS: [Filter; 2] = [
     Filter::DirectionStar { radius: 0.04 },
 ];
 
-/// Returns the filters of a kind of light. Their parameters do not change the shader.
-fn filters(kind: Kind) -> impl Iterator<Item = Filter> {
-    let directions = if kind.has_cube() {
-        &DIRECTIONS[..]
-    } else {
-        &[]
-    };
+/// Returns the filters of a kind of light, with those of point lights if it has a cube. Their
+/// parameters do not change the shader.
+pub fn filters(has_cube: bool) -> impl Iterator<Item = Filter> {
+    let directions = if has_cube { &DIRECTIONS[..] } else { &[] };
     let filters = Filter::PLANAR.iter().chain(&SOFT).chain(directions);
     filters.copied()
 }
@@ -94,12 +92,12 @@ pub fn lookup(name: &str, wgsl: String) -> Composition {
     }
 }
 
-/// Returns the lookup of a single light, for every kind of `kinds` with every filter and bias. `gpu`
-/// is any device that can gather.
+/// Returns the lookup of a single light, for every kind of `kinds` with every filter and bias.
+/// `gpu` is any device that can gather.
 pub fn lookups(gpu: &Gpu, kinds: &[Kind]) -> Result<Vec<Composition>, Box<dyn Error>> {
     let mut all = Vec::new();
     for &kind in kinds {
-        for filter in filters(kind) {
+        for filter in filters(kind.has_cube()) {
             for bias in BIASES {
                 let wgsl = kind::one_light(gpu, kind, (filter, bias))?;
                 all.push(lookup(&name(&kind.name(), filter, bias), wgsl));
@@ -112,7 +110,8 @@ pub fn lookups(gpu: &Gpu, kinds: &[Kind]) -> Result<Vec<Composition>, Box<dyn Er
 /// Returns lookups of two lights in one bind group: a sun and a point light, the latter with every
 /// filter and bias, and the former with another one each time.
 pub fn pairs(gpu: &Gpu) -> Result<Vec<Composition>, Box<dyn Error>> {
-    let samplings = |kind| filters(kind).flat_map(|filter| BIASES.map(|bias| (filter, bias)));
+    let samplings =
+        |kind: Kind| filters(kind.has_cube()).flat_map(|filter| BIASES.map(|bias| (filter, bias)));
     let sun = Kind::Sun(4);
     let point = Kind::Point { fade: 0.0 };
     let suns: Vec<_> = samplings(sun).collect();
@@ -168,8 +167,8 @@ pub fn fullscreen_passes() -> Result<Vec<Composition>, Box<dyn Error>> {
     passes.into_iter().map(pass).collect()
 }
 
-/// Returns everything that the library emits on a device that can gather: the lookups of every kind of
-/// light and of two lights, the depth passes, and the passes over a whole viewport.
+/// Returns everything that the library emits on a device that can gather: the lookups of every kind
+/// of light and of two lights, the depth passes, and the passes over a whole viewport.
 pub fn all(gpu: &Gpu) -> Result<Vec<Composition>, Box<dyn Error>> {
     let mut all = lookups(gpu, &Kind::EVERY)?;
     all.extend(pairs(gpu)?);
@@ -193,31 +192,27 @@ impl Composition {
     pub fn without_offsets(&self) -> Self {
         let source = |name| MODULES.iter().find(|module| module.name == name);
         let mut lookup = self.clone();
-        if let (Some(offsets), Some(texels)) = (source("texels_by_offsets"), source("texels")) {
-            lookup.wgsl = lookup.wgsl.replace(offsets.source, texels.source);
+        if let (Some(offsets), Some(blocks)) = (source("texels_by_offsets"), source("texel_blocks"))
+        {
+            lookup.wgsl = lookup.wgsl.replace(offsets.source, blocks.source);
         }
         lookup
     }
 
-    /// Returns the lookup as the library emits it on a device whose shaders cannot gather, or `None` for
-    /// one that compares some maps by the sampler and reads the texels of others, and for the probe.
+    /// Returns the lookup as the library emits it on a device whose shaders cannot gather, or
+    /// `None` for one that compares some maps by the sampler and reads the texels of others, and
+    /// for the probe.
     pub fn by_samples(&self) -> Option<Self> {
         if !self.gathers() {
             return Some(self.clone());
         }
         let source = |name| MODULES.iter().find(|module| module.name == name);
-        let gathering = ["texels", "texels_by_offsets"]
-            .into_iter()
-            .filter_map(source);
-        let gathering = gathering.map(|module| module.source);
-        let gathering = gathering
-            .into_iter()
-            .find(|text| self.wgsl.contains(text))?;
-        let sampling = source("texels_by_samples")?.source;
-        if self.wgsl.contains(": sampler_comparison;") {
+        let [gathering, sampling] = ["texels", "texels_by_samples"].map(source);
+        let (gathering, sampling) = (gathering?.source, sampling?.source);
+        if !self.wgsl.contains(gathering) || self.wgsl.contains(": sampler_comparison;") {
             return None;
         }
-        let wgsl = self.wgsl.replace(gathering, sampling);
+        let wgsl = self.without_offsets().wgsl.replace(gathering, sampling);
         Some(Self {
             name: format!("{} by_samples", self.name),
             wgsl: wgsl.replace(": texture_depth_2d_array;", ": texture_2d_array<f32>;"),
