@@ -1,11 +1,11 @@
 //! Turns the engine's camera, given as any pair of matrices, into half-spaces and depth along the
 //! view.
 
-use glam::{DMat4, DVec2, DVec3, DVec4, Mat4};
+use glam::{BVec3, DMat4, DVec2, DVec3, DVec4, Mat4};
 
-use crate::ShadowError;
 use crate::fit::image_corners::{ImageCorners, SliceSphere};
 use crate::fit::region::{HalfSpace, HalfSpaces};
+use crate::{Aabb, ShadowError};
 
 /// Describes the camera for whose image the shadows are rendered.
 ///
@@ -109,6 +109,7 @@ impl CameraView {
         }
         Ok(CameraFrustum {
             planes,
+            clip_from_render,
             eye,
             forward,
             render_from_view,
@@ -122,6 +123,7 @@ impl CameraView {
 #[derive(Debug)]
 pub(crate) struct CameraFrustum {
     pub planes: HalfSpaces,
+    clip_from_render: DMat4,
     eye: DVec3,
     forward: DVec3,
     render_from_view: DMat4,
@@ -178,6 +180,27 @@ impl CameraFrustum {
             self.render_from_view.transform_point3(start),
             self.render_from_view.transform_vector3(next - start),
         )
+    }
+
+    /// Returns the corners of a rectangle of the image, in the coordinates of
+    /// [`ray`](Self::ray), outside of which no ray meets the box. It extends to infinity where part
+    /// of the box is behind the camera.
+    pub fn image_rect(&self, bounds: &Aabb) -> (DVec2, DVec2) {
+        /// Is the distance by which the rectangle is larger than the box, for rounding.
+        const MARGIN: f64 = 1e-6;
+        let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        let (low, high) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+        for corner in 0..8 {
+            let chosen = BVec3::new(corner & 1 != 0, corner & 2 != 0, corner & 4 != 0);
+            let clip = self.clip_from_render * DVec3::select(chosen, high, low).extend(1.0);
+            let place = clip.truncate().truncate() / clip.w * 0.5 + 0.5;
+            if clip.w <= 0.0 || !place.is_finite() {
+                return (DVec2::NEG_INFINITY, DVec2::INFINITY);
+            }
+            (min, max) = (min.min(place), max.max(place));
+        }
+        let margin = MARGIN * (1.0 + min.abs().max(max.abs()));
+        (min - margin, max + margin)
     }
 
     /// Returns a sphere that holds the slice between two depths along the view.

@@ -15,19 +15,18 @@ pub enum CascadeLayout {
     ///
     /// Every 16 frames, the error of shadows is predicted for possible layouts from the points at
     /// which some hundreds of rays through the images meet the bounds of receivers. A point counts
-    /// where the bounds of a caster lie between it and the light. The squared error is taken to be 0.095
-    /// times the density of shadow edges times the size of a texel, both in pixels; the factor was
-    /// measured for the default filter. The density is taken from the outlines of the bounds of
-    /// casters, and is assumed to grow with the world size of a pixel to the power of 2/3.
+    /// where the bounds of a caster lie between it and the light. The squared error is taken to be
+    /// 0.095 times the density of shadow edges times the size of a texel, both in pixels; the
+    /// factor was measured for the default filter. The density is taken from the outlines of the
+    /// bounds of casters, and is assumed to grow with the world size of a pixel to the power of
+    /// 2/3.
     ///
     /// A cascade more is used where it lowers the predicted error by at least 4 percent. The layout
     /// changes when another one has been better by 15 percent for 128 frames, or at once where
     /// another halves the error, as after a cut of the camera. All cascades are drawn when it
     /// changes. The same frames always lead to the same layouts.
     ///
-    /// Without a camera, one cascade has all texels. Static casters are not cached apart from
-    /// moving ones, since only whole layers of depth can be copied: a view with a moving caster is
-    /// drawn with all its casters. A map of fewer than some 200 texels a side is not divided, since
-    /// the borders of its parts would take too many of them.
+    /// Without a camera, one cascade has all texels. A map of fewer than some 200 texels a side is
+    /// not divided, since the borders of its parts would take too many of them.
     Automatic,
 }

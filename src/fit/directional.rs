@@ -12,7 +12,7 @@ use crate::fit::extruded_rect::ExtrudedRect;
 use crate::fit::footprint::{FootprintScratch, SliceReport};
 use crate::fit::layout::HeldLayout;
 use crate::fit::layout_choice::{Layout, Prediction};
-use crate::fit::layout_samples::{Sample, Sampled};
+use crate::fit::layout_samples::{SampleScratch, Sampled};
 use crate::fit::map_rect::{HeldBounds, HeldDepth, LightSpaceBounds};
 use crate::fit::required::{camera_slice, checked_spacing, held_depths, required_box};
 use crate::fit::spacing::Spacing;
@@ -50,7 +50,7 @@ pub(crate) struct FitScratch {
     lists: SeenLists,
     parts: PartScratch,
     footprint: FootprintScratch,
-    samples: Vec<Sample>,
+    samples: SampleScratch,
 }
 
 impl DirectionalFit {

@@ -7,7 +7,7 @@ use crate::fit::axes::LightBox;
 use crate::fit::cascade_bounds::Cascade;
 use crate::fit::directional_input::{FitInput, FitLimits, Region};
 use crate::fit::layout_pack::{Content, Layer};
-use crate::fit::layout_samples::{Sample, Sampled};
+use crate::fit::layout_samples::{Sample, SampleScratch, Sampled};
 use crate::fit::map_rect::HeldDepth;
 use crate::fit::required::{camera_slice, required_box};
 use crate::fit::spacing::Spacing;
@@ -134,13 +134,14 @@ impl<'a> Prediction<'a> {
         limits: &'a FitLimits,
         visible: &SeenBounds,
         held_depths: Option<&HeldDepth>,
-        samples: &'a mut Vec<Sample>,
+        scratch: &'a mut SampleScratch,
     ) -> Option<Self> {
         let input = sampled.input;
         let Region::Cameras(cameras) = input.region else {
             return None;
         };
-        sampled.take(cameras, samples);
+        sampled.take(cameras, scratch);
+        let samples = &mut scratch.samples;
         let sample_count = samples.len();
         samples.retain(|sample| sample.edges > 0.0);
         if samples.is_empty() {

@@ -1,12 +1,14 @@
 //! Samples what cameras see, to predict how wrong the shadows of a layout will be.
 
+use std::ops::RangeInclusive;
+
 use glam::{DVec2, DVec3};
 
 use crate::Aabb;
-use crate::fit::axes::LightBox;
 use crate::fit::camera::CameraFrustum;
 use crate::fit::caster_parts::CasterPart;
 use crate::fit::directional_input::{CasterBounds, FitInput};
+use crate::fit::point_grid::PointGrid;
 use crate::fit::visible::Seen;
 
 /// Is the number of rays in a round, which all cameras of a frame share.
@@ -43,7 +45,7 @@ const LEAST_COSINE: f64 = 0.02;
 const MEAN_COSINE: f64 = 0.5;
 
 /// Is a visible point.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Sample {
     /// Is its position across the light.
     pub light: DVec2,
@@ -54,11 +56,42 @@ pub(crate) struct Sample {
     pub pixel: f64,
 }
 
-/// Is a point at which a ray may meet a receiver.
-struct Hit {
-    depth: f64,
-    /// Is the outward normal of the side that it meets, if the surface is known to be there.
+/// Holds lists that are reused from prediction to prediction.
+#[derive(Debug, Default)]
+pub(crate) struct SampleScratch {
+    /// Holds what was sampled last.
+    pub samples: Vec<Sample>,
+    rays: Vec<Ray>,
+    hits: Vec<Hit>,
+    grid: PointGrid,
+}
+
+/// Is a ray through a camera's image, with what it has met so far.
+#[derive(Clone, Copy, Debug)]
+struct Ray {
+    /// Is where it passes through the image, from 0 to 1 along x and y.
+    place: DVec2,
+    /// Chooses among the depths at which it may meet a receiver, from 0 to 1.
+    choice: f64,
+    start: DVec3,
+    per_depth: DVec3,
+    /// Is the depth of the nearest flat bounds, or the far end of the camera's view.
+    end: f64,
+    /// Is the outward normal of these bounds.
     normal: Option<DVec3>,
+    /// Is the depth at which the first of the other bounds begin, and at which the last end.
+    first: f64,
+    last: f64,
+}
+
+/// Is a point at which a ray may meet a receiver.
+#[derive(Clone, Copy, Debug)]
+struct Hit {
+    render: DVec3,
+    /// Holds the rest of the sample. Its density of edges is that of a pixel of size 1.
+    sample: Sample,
+    /// Is the size of the pixel as far as it counts.
+    counted_pixel: f64,
 }
 
 /// Holds what is sampled.
@@ -70,21 +103,24 @@ pub(crate) struct Sampled<'a> {
 }
 
 impl Sampled<'_> {
-    /// Replaces `samples` by those of the points at which rays through the images of `cameras` meet
-    /// the bounds of what they see. The rays are the same in all frames.
-    pub fn take(&self, cameras: &[CameraFrustum], samples: &mut Vec<Sample>) {
-        samples.clear();
+    /// Replaces `scratch.samples` by those of the points at which rays through the images of
+    /// `cameras` meet the bounds of what they see. The rays are the same in all frames.
+    ///
+    /// Boxes look for the rays that may meet them, since there are far fewer rays than pairs of a
+    /// ray and a box.
+    pub fn take(&self, cameras: &[CameraFrustum], scratch: &mut SampleScratch) {
+        scratch.samples.clear();
         let rays = (RAYS / (cameras.len() as u32).max(1)).max(16);
         for round in 0..ROUNDS {
-            let indices = || round * rays + 1..=(round + 1) * rays;
             for camera in cameras.iter().enumerate() {
-                samples.extend(indices().filter_map(|index| self.sample(camera, index)));
+                self.sample(camera, round * rays + 1..=(round + 1) * rays, scratch);
             }
-            let shadowed = samples.iter().filter(|sample| sample.edges > 0.0);
+            let shadowed = scratch.samples.iter().filter(|sample| sample.edges > 0.0);
             if shadowed.count() >= ENOUGH {
                 break;
             }
         }
+        let samples = &mut scratch.samples;
         let logs = samples.iter().map(|sample| sample.pixel.ln()).sum::<f64>();
         let mean_pixel = (logs / samples.len().max(1) as f64).exp();
         for sample in samples.iter_mut().filter(|sample| sample.edges > 0.0) {
@@ -93,107 +129,85 @@ impl Sampled<'_> {
         }
     }
 
-    fn sample(&self, camera: (usize, &CameraFrustum), index: u32) -> Option<Sample> {
-        // These are the fractions of the multiples of three irrational numbers, which fill a cube
-        // most evenly (Roberts 2018, "The Unreasonable Effectiveness of Quasirandom Sequences").
-        const STEPS: DVec3 = DVec3::new(
-            0.819_172_513_396_164_4,
-            0.671_043_606_703_789_3,
-            0.549_700_477_901_970_9,
-        );
-        let place = (STEPS * f64::from(index)).fract();
-        let (start, per_depth) = camera.1.ray(place.truncate());
-        let hit = self.hit(camera, (start, per_depth), place.z)?;
-        let point = start + per_depth * hit.depth;
+    /// Adds the samples of some rays of a camera.
+    fn sample(
+        &self,
+        (index, camera): (usize, &CameraFrustum),
+        indices: RangeInclusive<u32>,
+        scratch: &mut SampleScratch,
+    ) {
+        let SampleScratch {
+            samples,
+            rays,
+            hits,
+            grid,
+        } = scratch;
+        rays.clear();
+        rays.extend(indices.map(|index| Ray::new(camera, index)));
+        grid.fill(rays.iter().map(|ray| ray.place));
+        let (near, _) = camera.depth_range();
+        let near = near.max(0.0);
+        let seen = || self.seen.iter().filter_map(|seen| seen.bounds_of(index));
+        for bounds in seen().filter(|bounds| is_flat(bounds)) {
+            let (min, max) = camera.image_rect(bounds);
+            for ray in grid.near(min, max) {
+                rays[ray].meet_flat(bounds, near);
+            }
+        }
+        for bounds in seen().filter(|bounds| !is_flat(bounds)) {
+            let (min, max) = camera.image_rect(bounds);
+            for ray in grid.near(min, max) {
+                rays[ray].meet_solid(bounds, near);
+            }
+        }
+        hits.clear();
+        hits.extend(rays.iter().filter_map(|ray| self.hit(camera, ray)));
+        grid.fill(hits.iter().map(|hit| hit.sample.light));
+        self.add_edges(hits, grid);
+        samples.extend(hits.iter().filter_map(|hit| {
+            let edges = hit.sample.edges.is_finite();
+            edges.then_some(Sample {
+                edges: hit.sample.edges * hit.counted_pixel,
+                ..hit.sample
+            })
+        }));
+    }
+
+    /// Returns where a ray meets a receiver, with no edges.
+    fn hit(&self, camera: &CameraFrustum, ray: &Ray) -> Option<Hit> {
+        let (depth, normal) = ray.depth_and_normal()?;
+        let render = ray.start + ray.per_depth * depth;
         let space = &self.input.space;
         let toward_light = space.axes.toward_light();
-        let cosine = |direction: DVec3| match hit.normal {
+        let cosine = |direction: DVec3| match normal {
             None => MEAN_COSINE,
             Some(normal) => normal.dot(direction).abs().max(LEAST_COSINE),
         };
-        let height = camera.1.image_height(hit.depth) / IMAGE_HEIGHT_PIXELS;
-        let area_factor = cosine(toward_light) / cosine(per_depth.normalize());
+        let height = camera.image_height(depth) / IMAGE_HEIGHT_PIXELS;
+        let area_factor = cosine(toward_light) / cosine(ray.per_depth.normalize());
         let pixel = height * area_factor.sqrt();
-        let facing = match hit.normal {
+        let facing = match normal {
             Some(normal) if normal.dot(toward_light) < 0.0 => AWAY,
             _ => 1.0,
         };
-        let edges = self.edges_per_length(point, toward_light)?;
-        let light = space.point(point);
-        (pixel > 0.0 && pixel.is_finite() && light.is_finite()).then_some(Sample {
-            light: light.truncate(),
-            edges: edges * pixel * facing,
-            pixel,
+        let light = space.point(render).truncate();
+        (pixel > 0.0 && pixel.is_finite() && light.is_finite()).then_some(Hit {
+            render,
+            sample: Sample {
+                light,
+                edges: 0.0,
+                pixel,
+            },
+            counted_pixel: pixel * facing,
         })
     }
 
-    /// Returns where a ray meets a receiver. `choice`, from 0 to 1, chooses among the places where
-    /// it may: flat bounds are met for certain; in others the surface may be anywhere, most likely
-    /// toward the end.
-    fn hit(
-        &self,
-        (index, camera): (usize, &CameraFrustum),
-        (start, per_depth): (DVec3, DVec3),
-        choice: f64,
-    ) -> Option<Hit> {
-        let (near, far) = camera.depth_range();
-        let near = near.max(0.0);
-        let inverse = per_depth.recip();
-        let seen = || self.seen.iter().filter_map(|seen| seen.bounds_of(index));
-        let chord = |bounds: &Aabb| {
-            let low = (bounds.min.as_dvec3() - start) * inverse;
-            let high = (bounds.max.as_dvec3() - start) * inverse;
-            let (enter, leave) = (low.min(high), low.max(high));
-            let meets = enter.max_element() <= leave.min_element() && leave.min_element() >= near;
-            meets.then_some((enter, leave.min_element()))
-        };
-        let mut surface: Option<Hit> = None;
-        let mut end = far;
-        for bounds in seen().filter(|bounds| is_flat(bounds)) {
-            let Some((enter, _)) = chord(bounds) else {
-                continue;
-            };
-            let depth = enter.max_element();
-            if (near..end).contains(&depth) {
-                let axis = enter.max_position();
-                let mut normal = DVec3::ZERO;
-                normal[axis] = -per_depth[axis].signum();
-                end = depth;
-                surface = Some(Hit {
-                    depth,
-                    normal: Some(normal),
-                });
-            }
-        }
-        let (mut first, mut last) = (f64::INFINITY, f64::NEG_INFINITY);
-        for bounds in seen().filter(|bounds| !is_flat(bounds)) {
-            if let Some((enter, leave)) = chord(bounds) {
-                let enter = enter.max_element().max(near);
-                if enter < end {
-                    first = first.min(enter);
-                    last = last.max(leave.min(end));
-                }
-            }
-        }
-        let within = |choice: f64| {
-            (first <= last && last.is_finite()).then(|| Hit {
-                depth: first + (last - first) * choice.sqrt(),
-                normal: None,
-            })
-        };
-        match surface {
-            None => within(choice),
-            Some(surface) if choice < 0.5 => Some(surface),
-            Some(surface) => Some(within(2.0 * choice - 1.0).unwrap_or(surface)),
-        }
-    }
-
-    /// Returns the length of the outlines of casters between a point and the light, per area across
-    /// the light; 0 where there are none.
-    fn edges_per_length(&self, point: DVec3, toward_light: DVec3) -> Option<f64> {
-        let inverse = toward_light.recip();
-        let least = 1e-6 * point.abs().max_element();
-        let shadows = |bounds: &Aabb| {
+    /// Adds to each point the length of the outlines of casters between it and the light, per area
+    /// across the light. `grid` holds the points across the light.
+    fn add_edges(&self, hits: &mut [Hit], grid: &PointGrid) {
+        let inverse = self.input.space.axes.toward_light().recip();
+        let shadows = |bounds: &Aabb, point: DVec3| {
+            let least = 1e-6 * point.abs().max_element();
             let low = (bounds.min.as_dvec3() - point) * inverse;
             let high = (bounds.max.as_dvec3() - point) * inverse;
             let enter = low.min(high).max_element().max(0.0);
@@ -203,14 +217,96 @@ impl Sampled<'_> {
         let whole = whole.filter(|(caster, _)| caster.can_shadow);
         let whole = whole.map(|(caster, bounds)| (&caster.light, bounds));
         let parts = self.parts.iter().map(|part| (&part.light, &part.bounds));
-        let edges = whole
-            .chain(parts)
-            .filter(|(_, bounds)| shadows(bounds))
-            .map(|(light, _): (&LightBox, _)| {
-                2.0 * (light.max - light.min).truncate().recip().element_sum()
-            })
-            .sum::<f64>();
-        edges.is_finite().then_some(edges)
+        for (light, bounds) in whole.chain(parts) {
+            let (min, max) = (light.min.truncate(), light.max.truncate());
+            let edges = 2.0 * (max - min).recip().element_sum();
+            for hit in grid.near(min, max) {
+                if shadows(bounds, hits[hit].render) {
+                    hits[hit].sample.edges += edges;
+                }
+            }
+        }
+    }
+}
+
+impl Ray {
+    /// Makes the ray at `index` of those that are spread over the image.
+    fn new(camera: &CameraFrustum, index: u32) -> Self {
+        // These are the fractions of the multiples of three irrational numbers, which fill a cube
+        // most evenly (Roberts 2018, "The Unreasonable Effectiveness of Quasirandom Sequences").
+        const STEPS: DVec3 = DVec3::new(
+            0.819_172_513_396_164_4,
+            0.671_043_606_703_789_3,
+            0.549_700_477_901_970_9,
+        );
+        let place = (STEPS * f64::from(index)).fract();
+        let (start, per_depth) = camera.ray(place.truncate());
+        Self {
+            place: place.truncate(),
+            choice: place.z,
+            start,
+            per_depth,
+            end: camera.depth_range().1,
+            normal: None,
+            first: f64::INFINITY,
+            last: f64::NEG_INFINITY,
+        }
+    }
+
+    /// Returns, for each axis, the depth at which the ray enters the slab of the bounds, and the
+    /// depth at which it leaves them; `None` where it does not meet them beyond `near`.
+    fn chord(&self, bounds: &Aabb, near: f64) -> Option<(DVec3, f64)> {
+        let inverse = self.per_depth.recip();
+        let low = (bounds.min.as_dvec3() - self.start) * inverse;
+        let high = (bounds.max.as_dvec3() - self.start) * inverse;
+        let (enter, leave) = (low.min(high), low.max(high));
+        let meets = enter.max_element() <= leave.min_element() && leave.min_element() >= near;
+        meets.then_some((enter, leave.min_element()))
+    }
+
+    /// Ends the ray where it meets flat bounds, which the surface fills.
+    fn meet_flat(&mut self, bounds: &Aabb, near: f64) {
+        let Some((enter, _)) = self.chord(bounds, near) else {
+            return;
+        };
+        let depth = enter.max_element();
+        if (near..self.end).contains(&depth) {
+            let axis = enter.max_position();
+            let mut normal = DVec3::ZERO;
+            normal[axis] = -self.per_depth[axis].signum();
+            self.end = depth;
+            self.normal = Some(normal);
+        }
+    }
+
+    /// Extends the depths at which the surface in other bounds may be met, up to the end.
+    fn meet_solid(&mut self, bounds: &Aabb, near: f64) {
+        if let Some((enter, leave)) = self.chord(bounds, near) {
+            let enter = enter.max_element().max(near);
+            if enter < self.end {
+                self.first = self.first.min(enter);
+                self.last = self.last.max(leave.min(self.end));
+            }
+        }
+    }
+
+    /// Returns the depth at which the ray meets a receiver, with the normal of the side that it
+    /// meets if the surface is known to be there. In bounds that are not flat the surface may be
+    /// anywhere, most likely toward the end.
+    fn depth_and_normal(&self) -> Option<(f64, Option<DVec3>)> {
+        let within = |choice: f64| {
+            let (first, last) = (self.first, self.last);
+            (first <= last && last.is_finite())
+                .then(|| (first + (last - first) * choice.sqrt(), None))
+        };
+        let Some(normal) = self.normal else {
+            return within(self.choice);
+        };
+        let surface = (self.end, Some(normal));
+        if self.choice < 0.5 {
+            return Some(surface);
+        }
+        within(2.0 * self.choice - 1.0).or(Some(surface))
     }
 }
 

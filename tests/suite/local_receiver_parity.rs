@@ -37,7 +37,7 @@ const MEMBERS: [(&str, usize); 14] = [
     ("right", 3),
     ("down", 3),
     ("toward", 3),
-    ("middle", 2),
+    ("mapping.middle", 2),
     ("offset_texels", 1),
     ("offset_world", 1),
     ("lateral_error", 1),
@@ -162,8 +162,8 @@ fn raw(receiver: ShadowReceiver) -> array<vec4<f32>, 2> {{
             "{kind:?} {filter:?} {bias:?} {point:?}\n{seen:?}\n{reference:?}\n{tolerance:?}"
         );
         // What decides whether a view covers a position is compared where rounding does not decide.
-        let middle = DVec2::from(member::<[f32; 2]>(view, "middle").map(f64::from));
-        let inner = DVec2::from(member::<[f32; 2]>(view, "inner").map(f64::from));
+        let middle = DVec2::from(member::<[f32; 2]>(view, "mapping.middle").map(f64::from));
+        let inner = DVec2::from(member::<[f32; 2]>(view, "mapping.inner").map(f64::from));
         let margin = ((reference.texel - middle).abs() - inner)
             .abs()
             .min_element();
