@@ -51,6 +51,8 @@ pub(crate) const CASTER_BUILTIN_MULTIVIEW: ShaderModule = module!(
     ["caster_multiview"]
 );
 pub(crate) const FULLSCREEN: ShaderModule = module!("fullscreen", "pass/fullscreen.wgsl", []);
+pub(crate) const RECT_COPY: ShaderModule =
+    module!("rect_copy", "pass/rect_copy.wgsl", ["fullscreen"]);
 pub(crate) const DEBUG_VIEW: ShaderModule = module!(
     "debug_view",
     "pass/debug_view.wgsl",
@@ -147,6 +149,7 @@ pub const MODULES: &[ShaderModule] = &[
     CASTER_MULTIVIEW,
     CASTER_BUILTIN_MULTIVIEW,
     FULLSCREEN,
+    RECT_COPY,
     DEBUG_VIEW,
     CASCADE_TINT,
     GATHER_PROBE,

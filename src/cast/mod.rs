@@ -13,7 +13,7 @@
 //! mesh.rs                MeshCaster: a ready-made caster; mesh_descriptor.rs, mesh_check.rs: its descriptor and checks
 //! closed.rs              which meshes are closed solids; mesh_shape.rs: which cannot shadow themselves
 //! layer_cache.rs         what a layer caches, and what a frame must draw
-//! recorder.rs            the passes; rect_clear.rs: how a part of a layer is cleared
+//! recorder.rs            the passes; shared_layer.rs: how parts of a layer are cleared and copied
 //! draw_casters.rs        the loop that draws casters in them
 //! cube_pass.rs           six faces in one pass; cube_rule.rs: when that is cheaper than a pass for each
 //! ```
@@ -36,7 +36,7 @@ mod pipeline_build;
 mod pipeline_descriptor;
 mod pipeline_reads;
 mod recorder;
-mod rect_clear;
+mod shared_layer;
 mod view_uniform;
 
 pub use caster::{Revision, ShadowCaster};

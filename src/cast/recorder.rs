@@ -3,7 +3,7 @@
 use crate::cast::cube_pass::{CubePass, PreparedCubePass};
 use crate::cast::draw_casters::{DrawnCaster, PassDefaults, draw_casters};
 use crate::cast::layer_cache::{LayerCache, Plan, ViewDraws};
-use crate::cast::rect_clear::rect_clear_pipeline;
+use crate::cast::shared_layer::SharedLayer;
 use crate::cast::view_uniform::{CasterViewUniform, VIEW_UNIFORM_BYTES, view_layout};
 use crate::cast::{CLEAR, CasterPipeline, FrameCasters};
 use crate::error::DeviceError;
@@ -18,12 +18,11 @@ pub(crate) struct Recorder {
     stride: u64,
     bind_group: wgpu::BindGroup,
     layers: Vec<Layer>,
-    /// Is false on wgpu's OpenGL backend, which copies no depth textures, and where views share a
-    /// layer, since only whole layers of depth are copied; there all casters of a view are drawn
-    /// again.
+    /// Is false on wgpu's OpenGL backend, which copies no depth textures, unless views share a
+    /// layer, where a draw copies them; all casters of a view are drawn again there.
     can_copy: bool,
-    /// Clears rectangles where all views share one layer; `None` where each has its own.
-    rect_clear: Option<wgpu::RenderPipeline>,
+    /// Is present where all views share one layer.
+    shared_layer: Option<SharedLayer>,
     /// Is present where the layers are the faces of a cube and the device can draw them at once.
     cube: Option<CubePass>,
 }
@@ -32,7 +31,8 @@ pub(crate) struct Recorder {
 struct Layer {
     label: String,
     cache: LayerCache,
-    /// Is the static-caster cache, a texture of one layer; `None` before its first use.
+    /// Is the static-caster cache, a texture of one layer; `None` before its first use, and where
+    /// views share a layer, which has one for all.
     static_cache: Option<DepthMap>,
     /// States that the device could not make one.
     static_cache_failed: bool,
@@ -101,8 +101,8 @@ impl Recorder {
                 refusal,
             })
         })?;
-        let rect_clear = match kind {
-            RecorderKind::SharedLayer(format) => Some(rect_clear_pipeline(device, label, format)?),
+        let shared_layer = match kind {
+            RecorderKind::SharedLayer(format) => Some(SharedLayer::new(device, label, format)?),
             RecorderKind::Layers | RecorderKind::Cube => None,
         };
         let layers = (0..views).map(|view| Layer {
@@ -117,9 +117,8 @@ impl Recorder {
             stride,
             bind_group,
             layers: layers.collect(),
-            // Depth is copied by whole layers alone.
-            can_copy: device.adapter_info().backend != wgpu::Backend::Gl && rect_clear.is_none(),
-            rect_clear,
+            can_copy: shared_layer.is_some() || device.adapter_info().backend != wgpu::Backend::Gl,
+            shared_layer,
             cube: if kind == RecorderKind::Cube {
                 CubePass::new(device, label)?
             } else {
@@ -141,8 +140,9 @@ impl Recorder {
 
     /// Returns the device memory, in bytes, of the static-caster caches.
     pub fn bytes(&self) -> u64 {
-        let caches = self.layers.iter().filter_map(|l| l.static_cache.as_ref());
-        caches.map(DepthMap::bytes).sum()
+        let own = self.layers.iter().filter_map(|l| l.static_cache.as_ref());
+        let shared = self.shared_layer.iter().filter_map(|l| l.static_cache());
+        own.chain(shared).map(DepthMap::bytes).sum()
     }
 
     /// Plans the frame for `map` and stages the uniforms of `views`. Each view is made to allow for
@@ -161,8 +161,14 @@ impl Recorder {
         for draws in views.iter_mut() {
             let layer = &mut self.layers[draws.view.index() as usize];
             draws.plan = layer.cache.plan(draws, casters, self.can_copy);
-            if draws.plan == Plan::RenewStaticCache && !layer.make_static_cache(device, map) {
-                draws.plan = Plan::All;
+            if draws.plan == Plan::RenewStaticCache {
+                let has_cache = match &mut self.shared_layer {
+                    Some(shared) => shared.make_static_cache(device, &layer.label, map),
+                    None => layer.make_static_cache(device, map),
+                };
+                if !has_cache {
+                    draws.plan = Plan::All;
+                }
             }
             if draws.plan != Plan::Keep {
                 add_pipelines(
@@ -242,24 +248,23 @@ impl Recorder {
                 label: &layer.label,
                 view_group: (&self.bind_group, (self.stride * u64::from(index)) as u32),
                 format: map.format(),
-                rect_clear: self.rect_clear.as_ref(),
+                shared_layer: self.shared_layer.as_ref(),
             };
             let all = draws.casters.iter().zip(own_pipelines);
             let all = all.map(|(&index, &pipeline)| DrawnCaster { index, pipeline });
             let (target, view) = (map.layer_view(draws.view.layer()), &draws.view);
             passes += draws.plan.passes();
-            match &layer.static_cache {
+            let static_cache = match &self.shared_layer {
+                Some(shared) => shared.static_cache(),
+                None => layer.static_cache.as_ref(),
+            };
+            match static_cache {
                 Some(static_cache) if draws.plan != Plan::All => {
                     let is_static = |caster: &DrawnCaster<'_>| cache.is_static(caster.index);
                     let static_casters = all.clone().filter(is_static);
                     if draws.plan == Plan::RenewStaticCache {
-                        pass.draw(
-                            static_cache.layer_view(0),
-                            CLEAR,
-                            view,
-                            static_casters,
-                            casters,
-                        );
+                        let target = static_cache.layer_view(0);
+                        pass.draw(target, Before::Clear, view, static_casters, casters);
                     } else {
                         for caster in static_casters {
                             draws.copied += 1;
@@ -267,15 +272,17 @@ impl Recorder {
                                 u64::from(casters.facts(caster.index).triangles);
                         }
                     }
-                    pass.encoder.copy_texture_to_texture(
-                        static_cache.layer_copy(0),
-                        map.layer_copy(draws.view.layer()),
-                        map.layer_extent(),
-                    );
+                    if self.shared_layer.is_none() {
+                        pass.encoder.copy_texture_to_texture(
+                            static_cache.layer_copy(0),
+                            map.layer_copy(draws.view.layer()),
+                            map.layer_extent(),
+                        );
+                    }
                     let moving = all.filter(|caster| !is_static(caster));
-                    pass.draw(target, wgpu::LoadOp::Load, view, moving, casters);
+                    pass.draw(target, Before::StaticCasters, view, moving, casters);
                 }
-                _ => pass.draw(target, CLEAR, view, all, casters),
+                _ => pass.draw(target, Before::Clear, view, all, casters),
             }
             layer.cache = cache;
         }
@@ -314,34 +321,44 @@ impl Layer {
     }
 }
 
+/// States what a view holds before its casters are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Before {
+    /// It holds nothing.
+    Clear,
+    /// It holds the static casters, which have been copied into a layer that is the view's alone,
+    /// and are copied into a shared one by the pass.
+    StaticCasters,
+}
+
 /// Records passes over one layer.
 struct LayerPass<'a> {
     encoder: &'a mut wgpu::CommandEncoder,
     label: &'a str,
     view_group: (&'a wgpu::BindGroup, u32),
     format: DepthFormat,
-    /// Clears the rectangle of a view that shares its layer with others.
-    rect_clear: Option<&'a wgpu::RenderPipeline>,
+    /// Is present where the view shares its layer with others.
+    shared_layer: Option<&'a SharedLayer>,
 }
 
 impl LayerPass<'_> {
     fn draw<'c>(
         &mut self,
         target: &wgpu::TextureView,
-        load: wgpu::LoadOp<f32>,
+        before: Before,
         view: &ShadowView,
         drawn: impl Iterator<Item = DrawnCaster<'c>>,
         casters: &FrameCasters<'_>,
     ) {
-        // The texels of the other views in the layer are kept.
-        let attachment_load = match self.rect_clear {
-            Some(_) => wgpu::LoadOp::Load,
-            None => load,
+        // A shared layer keeps the texels of its other views.
+        let load = match (self.shared_layer, before) {
+            (None, Before::Clear) => CLEAR,
+            (Some(_), _) | (None, Before::StaticCasters) => wgpu::LoadOp::Load,
         };
         let mut pass = self.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(self.label),
             color_attachments: &[],
-            depth_stencil_attachment: Some(super::depth_attachment(target, attachment_load)),
+            depth_stencil_attachment: Some(super::depth_attachment(target, load)),
             timestamp_writes: None,
             occlusion_query_set: None,
             multiview_mask: None,
@@ -352,10 +369,12 @@ impl LayerPass<'_> {
             offsets: &[offset],
             texels: view.texels(),
         };
-        if let (Some(pipeline), wgpu::LoadOp::Clear(_)) = (self.rect_clear, load) {
+        if let Some(shared) = self.shared_layer {
             defaults.set_rect(&mut pass);
-            pass.set_pipeline(pipeline);
-            pass.draw(0..3, 0..1);
+            match before {
+                Before::Clear => shared.clear(&mut pass),
+                Before::StaticCasters => shared.copy_static_casters(&mut pass),
+            }
         }
         // The planning of the frame has checked that there is a pipeline for the format.
         let of_format = |pipeline: &'c CasterPipeline| pipeline.wgpu_pipeline(self.format);

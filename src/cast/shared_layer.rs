@@ -1,55 +1,193 @@
-//! Makes the pipeline that clears a rectangle of a layer.
+//! Clears rectangles of a layer that several views share, and copies static casters into them.
+//!
+//! A render pass clears and a copy of depths fills whole layers, so both are draws here.
 
 use crate::ShadowError;
 use crate::error::DeviceError;
-use crate::gpu::{DepthFormat, capture_device_errors};
+use crate::gpu::{DepthFormat, DepthMap, capture_device_errors};
 use crate::shader;
 
-/// Makes the pipeline whose draw of three vertices sets the depths within the scissor rectangle of
-/// a depth pass to the far plane. It needs no bind group.
-pub(crate) fn rect_clear_pipeline(
+/// Holds the pipelines of a layer that is divided among views, and the texture in which these views
+/// cache their static casters.
+#[derive(Debug)]
+pub(crate) struct SharedLayer {
+    clear: wgpu::RenderPipeline,
+    copy: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+    sampler: wgpu::Sampler,
+    /// Is `None` before its first use.
+    static_cache: Option<SharedStaticCache>,
+    /// States that the device could not make one.
+    static_cache_failed: bool,
+}
+
+/// Holds the depths of static casters, in the rectangles that their views have in the layer.
+#[derive(Debug)]
+struct SharedStaticCache {
+    map: DepthMap,
+    /// Binds the map for the copy.
+    bind_group: wgpu::BindGroup,
+}
+
+impl SharedLayer {
+    pub fn new(
+        device: &wgpu::Device,
+        label: &str,
+        format: DepthFormat,
+    ) -> Result<Self, ShadowError> {
+        let label = &format!("{label} shared layer");
+        let create = || {
+            let layout = create_layout(device, label);
+            let module = create_module(device, label);
+            let pipeline = |layouts: &[_], fragment| {
+                depth_pipeline(device, label, layouts, &module, fragment, format)
+            };
+            Self {
+                clear: pipeline(&[], None),
+                copy: pipeline(&[Some(&layout)], Some("shadow_copy_fragment")),
+                sampler: device.create_sampler(&wgpu::SamplerDescriptor {
+                    label: Some(label),
+                    ..Default::default()
+                }),
+                layout,
+                static_cache: None,
+                static_cache_failed: false,
+            }
+        };
+        capture_device_errors(device, create).map_err(|refusal| {
+            ShadowError::Device(DeviceError {
+                object: "the pipelines of a shared layer",
+                refusal,
+            })
+        })
+    }
+
+    /// Makes the texture of the static casters for `map` if there is none. Returns false where the
+    /// device could not make it; all casters are then drawn.
+    pub fn make_static_cache(
+        &mut self,
+        device: &wgpu::Device,
+        label: &str,
+        map: &DepthMap,
+    ) -> bool {
+        if self.static_cache.is_none() && !self.static_cache_failed {
+            let label = format!("{label} static casters");
+            let made = DepthMap::new(device, &label, "map_size", map.size(), 1, map.format());
+            self.static_cache = made.ok().and_then(|map| {
+                let create = || {
+                    device.create_bind_group(&wgpu::BindGroupDescriptor {
+                        label: Some(&label),
+                        layout: &self.layout,
+                        entries: &[
+                            wgpu::BindGroupEntry {
+                                binding: 0,
+                                resource: wgpu::BindingResource::TextureView(map.array_view()),
+                            },
+                            wgpu::BindGroupEntry {
+                                binding: 1,
+                                resource: wgpu::BindingResource::Sampler(&self.sampler),
+                            },
+                        ],
+                    })
+                };
+                let bind_group = capture_device_errors(device, create).ok()?;
+                Some(SharedStaticCache { map, bind_group })
+            });
+            self.static_cache_failed = self.static_cache.is_none();
+        }
+        self.static_cache.is_some()
+    }
+
+    /// Returns the texture of the static casters, if there is one.
+    pub fn static_cache(&self) -> Option<&DepthMap> {
+        self.static_cache.as_ref().map(|cache| &cache.map)
+    }
+
+    /// Sets the depths within the scissor rectangle of a pass to the far plane.
+    pub fn clear(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_pipeline(&self.clear);
+        pass.draw(0..3, 0..1);
+    }
+
+    /// Sets the depths within the scissor rectangle of a pass to those of the static casters. It
+    /// replaces bind group 0.
+    pub fn copy_static_casters(&self, pass: &mut wgpu::RenderPass<'_>) {
+        let Some(cache) = &self.static_cache else {
+            return;
+        };
+        pass.set_pipeline(&self.copy);
+        pass.set_bind_group(0, &cache.bind_group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}
+
+fn create_module(device: &wgpu::Device, label: &str) -> wgpu::ShaderModule {
+    let source = [shader::FULLSCREEN.source, shader::RECT_COPY.source].concat();
+    device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(label),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    })
+}
+
+fn create_layout(device: &wgpu::Device, label: &str) -> wgpu::BindGroupLayout {
+    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty,
+        count: None,
+    };
+    let map = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: false },
+        view_dimension: wgpu::TextureViewDimension::D2Array,
+        multisampled: false,
+    };
+    let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering);
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some(label),
+        entries: &[entry(0, map), entry(1, sampler)],
+    })
+}
+
+/// Makes a pipeline whose draw of three vertices sets all depths within the scissor rectangle: to
+/// what the fragment stage returns, or to the far plane where there is none.
+fn depth_pipeline(
     device: &wgpu::Device,
     label: &str,
+    bind_group_layouts: &[Option<&wgpu::BindGroupLayout>],
+    module: &wgpu::ShaderModule,
+    fragment_entry: Option<&str>,
     format: DepthFormat,
-) -> Result<wgpu::RenderPipeline, ShadowError> {
-    let label = format!("{label} clearing of a rectangle");
-    let create = || {
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(&label),
-            source: wgpu::ShaderSource::Wgsl(shader::FULLSCREEN.source.into()),
-        });
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some(&label),
-            bind_group_layouts: &[],
-            immediate_size: 0,
-        });
-        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(&label),
-            layout: Some(&layout),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("shadow_fullscreen_vertex"),
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: format.texture_format(),
-                depth_write_enabled: Some(true),
-                depth_compare: Some(wgpu::CompareFunction::Always),
-                stencil: wgpu::StencilState::default(),
-                bias: wgpu::DepthBiasState::default(),
-            }),
-            multisample: wgpu::MultisampleState::default(),
-            fragment: None,
-            multiview_mask: None,
-            cache: None,
-        })
-    };
-    capture_device_errors(device, create).map_err(|refusal| {
-        ShadowError::Device(DeviceError {
-            object: "the pipeline that clears a rectangle",
-            refusal,
-        })
+) -> wgpu::RenderPipeline {
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(label),
+        bind_group_layouts,
+        immediate_size: 0,
+    });
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(label),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some("shadow_fullscreen_vertex"),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: format.texture_format(),
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Always),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: fragment_entry.map(|entry| wgpu::FragmentState {
+            module,
+            entry_point: Some(entry),
+            compilation_options: Default::default(),
+            targets: &[],
+        }),
+        multiview_mask: None,
+        cache: None,
     })
 }

@@ -1,17 +1,19 @@
 //! Compares maps that are kept, wholly or in part, with maps that are drawn completely: the bits
-//! are the same, over thousands of random frames. The tests run on Vulkan alone: wgpu's OpenGL
-//! backend copies no depth textures, so it has no static-caster caches there, and reading maps back
-//! is slow.
+//! are the same, over thousands of random frames. The tests run on Vulkan alone: on wgpu's OpenGL
+//! backend, which copies no depth textures, layers of their own have no static-caster caches, and
+//! reading maps back is slow.
+
+use std::ops::Range;
 
 use glam::{DVec3, Mat4, Vec3};
 use shadow_support::camera::Camera;
 use shadow_support::mesh::Mesh;
 use shadow_support::random::Random;
 use wgpu_shadows::{
-    Aabb, CasterPipeline, DepthFormat, DirectionalLight, DirectionalShadow,
+    Aabb, CascadeLayout, CasterPipeline, DepthFormat, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor,
     ShadowCaster, ShadowView, caster::CasterPipelineDescriptor, report::ShadowReport,
-    report::ViewReport, report::ViewStatus,
+    report::TexelRect, report::ViewReport, report::ViewStatus,
 };
 
 use crate::fixtures::frames::{Coverage, DirectionalFrame, OmniFrame, RecordFrame};
@@ -128,6 +130,23 @@ impl Ways {
     }
 }
 
+/// Returns the bytes of each row of a rectangle of texels in a layer of `map_size` texels a side.
+fn texel_rows(
+    texels: &TexelRect,
+    map_size: u32,
+    format: DepthFormat,
+) -> impl Iterator<Item = Range<usize>> {
+    let texel_bytes = match format {
+        DepthFormat::Unorm16 => 2,
+        _ => 4,
+    };
+    let TexelRect { min, size } = *texels;
+    (min.y..min.y + size.y).map(move |row| {
+        let start = (row * map_size + min.x) as usize * texel_bytes;
+        start..start + size.x as usize * texel_bytes
+    })
+}
+
 /// Records a frame of both lights, so that they have the same history, into an encoder that is
 /// dropped.
 fn throw_away<F, L: RecordFrame<F>>(gpu: &Gpu, lights: [&mut L; 2], frame: &F) {
@@ -142,7 +161,12 @@ fn throw_away<F, L: RecordFrame<F>>(gpu: &Gpu, lights: [&mut L; 2], frame: &F) {
 /// dropped.
 #[test]
 fn kept_maps_of_a_sun_are_what_would_be_drawn() {
-    for (format, frames) in [(DepthFormat::Float32, 1500), (DepthFormat::Unorm16, 500)] {
+    for (format, layout, frames) in [
+        (DepthFormat::Float32, CascadeLayout::Fixed, 1500),
+        (DepthFormat::Unorm16, CascadeLayout::Fixed, 500),
+        (DepthFormat::Float32, CascadeLayout::Automatic, 600),
+        (DepthFormat::Unorm16, CascadeLayout::Automatic, 300),
+    ] {
         let gpu = vulkan();
         let pipeline = CasterPipeline::new(
             &gpu.device,
@@ -154,8 +178,13 @@ fn kept_maps_of_a_sun_are_what_would_be_drawn() {
         .expect("a valid pipeline");
         let mut crowd = Crowd::new(gpu, &pipeline, 5);
         let descriptor = DirectionalShadowDescriptor {
-            map_size: 128,
+            // A smaller map is not divided.
+            map_size: match layout {
+                CascadeLayout::Fixed => 128,
+                _ => 256,
+            },
             cascades: 2,
+            layout,
             depth_format: format,
             ..Default::default()
         };
@@ -167,6 +196,7 @@ fn kept_maps_of_a_sun_are_what_would_be_drawn() {
         let mut camera = Camera::modern(DVec3::new(0.0, 6.0, 14.0), DVec3::ZERO, 1.0, 1.5);
         let mut light = Vec3::new(0.4, -1.0, 0.3);
         let mut ways = Ways::default();
+        let mut divided = false;
         for frame_index in 0..frames {
             crowd.step();
             if random.unit() < 0.02 {
@@ -199,17 +229,22 @@ fn kept_maps_of_a_sun_are_what_would_be_drawn() {
             gpu.submit(encoder);
             let (now, wanted) = (kept_bytes.read(gpu), fresh_bytes.read(gpu));
             for view in &report.views {
-                // A layer into which nothing casts is not sampled.
+                // A view into which nothing casts is not sampled.
                 if view.status == ViewStatus::Drawn {
+                    divided |= view.texels.size.x < descriptor.map_size;
                     let layer = view.layer as usize;
-                    assert!(
-                        now[layer] == wanted[layer],
-                        "{format:?}, frame {frame_index}, layer {layer}: {ways:?}"
-                    );
+                    let rows = texel_rows(&view.texels, descriptor.map_size, format);
+                    for row in rows {
+                        assert!(
+                            now[layer][row.clone()] == wanted[layer][row],
+                            "{format:?}, {layout:?}, frame {frame_index}, {view:?}: {ways:?}"
+                        );
+                    }
                 }
             }
         }
         ways.assert_all_taken(frames / 20);
+        assert_eq!(divided, layout == CascadeLayout::Automatic);
     }
 }
 
