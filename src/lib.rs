@@ -36,7 +36,7 @@
 //!     ) -> Result<(), ShadowError> {
 //!         let cameras = [camera];
 //!         let coverage = Coverage::Cameras(&cameras);
-//!         let frame = ShadowFrameDescriptor { origin: DVec3::ZERO, coverage, casters, receivers: &[] };
+//!         let frame = ShadowFrameDescriptor { origin: DVec3::ZERO, coverage, casters: Casters::List(casters), receivers: &[] };
 //!         let light = DirectionalLight::new(Vec3::new(0.4, -0.8, 0.2));
 //!         self.sun.record(encoder, &self.scene.frame(&frame)?, &light)?;
 //!         Ok(())
@@ -248,7 +248,9 @@ mod receive;
 pub mod shader;
 
 pub use aabb::Aabb;
-pub use cast::{CasterPipeline, MeshCaster, Revision, ShadowCaster};
+pub use cast::{
+    CasterId, CasterPipeline, CasterSet, Casters, MeshCaster, Revision, ShadowCaster,
+};
 pub use error::ShadowError;
 pub use fit::{CameraView, CascadeLayout, CascadeSplit, ShadowView, Stability};
 pub use gpu::DepthFormat;
@@ -268,7 +270,7 @@ pub use {glam, wgpu};
 pub mod caster {
     pub use crate::cast::{
         CasterPipelineDescriptor, CasterVertex, MeshCasterDescriptor, MeshIndices, ModelTransform,
-        PositionAttribute, caster_shape, is_closed_solid,
+        PositionAttribute, RetainedCasters, caster_shape, is_closed_solid,
     };
     pub use crate::fit::CasterShape;
 }

@@ -229,6 +229,8 @@ impl Recorder {
         let mut pipelines = prepared.pipelines.as_slice();
         for draws in views {
             if draws.plan == Plan::Keep {
+                let layer = &mut self.layers[draws.view.index() as usize];
+                layer.cache.keep(draws, casters);
                 continue;
             }
             let (own_pipelines, others) = pipelines.split_at(draws.casters.len());
@@ -250,7 +252,9 @@ impl Recorder {
             passes += draws.plan.passes();
             match &layer.static_cache {
                 Some(static_cache) if draws.plan != Plan::All => {
-                    let is_static = |caster: &DrawnCaster<'_>| cache.is_static(caster.index);
+                    let is_static = |caster: &DrawnCaster<'_>| {
+                        cache.is_static(casters.facts(caster.index).revision)
+                    };
                     let static_casters = all.clone().filter(is_static);
                     if draws.plan == Plan::RenewStaticCache {
                         pass.draw(

@@ -6,7 +6,9 @@ use crate::Aabb;
 use crate::fit::axes::LightBox;
 use crate::fit::camera::CameraFrustum;
 use crate::fit::caster_parts::CasterPart;
-use crate::fit::directional_input::{CasterBounds, FitInput};
+use crate::fit::directional_input::FitInput;
+use crate::fit::spacing::Spacing;
+use crate::fit::sun_casters::SunCasters;
 use crate::fit::visible::Seen;
 
 /// Is the number of rays in a round, which all cameras of a frame share.
@@ -65,7 +67,8 @@ struct Hit {
 pub(crate) struct Sampled<'a> {
     pub input: &'a FitInput<'a>,
     pub seen: &'a [Seen],
-    pub casters: &'a [CasterBounds],
+    /// Holds the casters that count as a whole.
+    pub casters: SunCasters<'a>,
     pub parts: &'a [CasterPart],
 }
 
@@ -74,11 +77,13 @@ impl Sampled<'_> {
     /// the bounds of what they see. The rays are the same in all frames.
     pub fn take(&self, cameras: &[CameraFrustum], samples: &mut Vec<Sample>) {
         samples.clear();
+        let mut outlines = Vec::new();
         let rays = (RAYS / (cameras.len() as u32).max(1)).max(16);
         for round in 0..ROUNDS {
             let indices = || round * rays + 1..=(round + 1) * rays;
             for camera in cameras.iter().enumerate() {
-                samples.extend(indices().filter_map(|index| self.sample(camera, index)));
+                let mut sample = |index| self.sample(camera, index, &mut outlines);
+                samples.extend(indices().filter_map(&mut sample));
             }
             let shadowed = samples.iter().filter(|sample| sample.edges > 0.0);
             if shadowed.count() >= ENOUGH {
@@ -93,7 +98,12 @@ impl Sampled<'_> {
         }
     }
 
-    fn sample(&self, camera: (usize, &CameraFrustum), index: u32) -> Option<Sample> {
+    fn sample(
+        &self,
+        camera: (usize, &CameraFrustum),
+        index: u32,
+        outlines: &mut Vec<f64>,
+    ) -> Option<Sample> {
         // These are the fractions of the multiples of three irrational numbers, which fill a cube
         // most evenly (Roberts 2018, "The Unreasonable Effectiveness of Quasirandom Sequences").
         const STEPS: DVec3 = DVec3::new(
@@ -118,7 +128,7 @@ impl Sampled<'_> {
             Some(normal) if normal.dot(toward_light) < 0.0 => AWAY,
             _ => 1.0,
         };
-        let edges = self.edges_per_length(point, toward_light)?;
+        let edges = self.edges_per_length(point, toward_light, outlines)?;
         let light = space.point(point);
         (pixel > 0.0 && pixel.is_finite() && light.is_finite()).then_some(Sample {
             light: light.truncate(),
@@ -148,17 +158,19 @@ impl Sampled<'_> {
             meets.then_some((enter, leave.min_element()))
         };
         let mut surface: Option<Hit> = None;
-        let mut end = far;
+        let (mut end, mut end_axis) = (far, 0);
         for bounds in seen().filter(|bounds| is_flat(bounds)) {
             let Some((enter, _)) = chord(bounds) else {
                 continue;
             };
             let depth = enter.max_element();
-            if (near..end).contains(&depth) {
-                let axis = enter.max_position();
+            let axis = enter.max_position();
+            // Of several at the same depth, the one across the first axis counts.
+            let is_first = depth < end || (depth == end && axis < end_axis);
+            if depth >= near && is_first {
                 let mut normal = DVec3::ZERO;
                 normal[axis] = -per_depth[axis].signum();
-                end = depth;
+                (end, end_axis) = (depth, axis);
                 surface = Some(Hit {
                     depth,
                     normal: Some(normal),
@@ -190,7 +202,12 @@ impl Sampled<'_> {
 
     /// Returns the length of the outlines of casters between a point and the light, per area across
     /// the light; 0 where there are none.
-    fn edges_per_length(&self, point: DVec3, toward_light: DVec3) -> Option<f64> {
+    fn edges_per_length(
+        &self,
+        point: DVec3,
+        toward_light: DVec3,
+        outlines: &mut Vec<f64>,
+    ) -> Option<f64> {
         let inverse = toward_light.recip();
         let least = 1e-6 * point.abs().max_element();
         let shadows = |bounds: &Aabb| {
@@ -199,17 +216,32 @@ impl Sampled<'_> {
             let enter = low.min(high).max_element().max(0.0);
             low.max(high).min_element() > enter + least
         };
-        let whole = self.casters.iter().zip(self.input.casters);
-        let whole = whole.filter(|(caster, _)| caster.can_shadow);
-        let whole = whole.map(|(caster, bounds)| (&caster.light, bounds));
-        let parts = self.parts.iter().map(|part| (&part.light, &part.bounds));
-        let edges = whole
-            .chain(parts)
-            .filter(|(_, bounds)| shadows(bounds))
-            .map(|(light, _): (&LightBox, _)| {
-                2.0 * (light.max - light.min).truncate().recip().element_sum()
-            })
-            .sum::<f64>();
+        let outline = |light: &LightBox| {
+            2.0 * (light.max - light.min).truncate().recip().element_sum()
+        };
+        let place = self.input.space.point(point);
+        let place = LightBox {
+            min: place,
+            max: place,
+        };
+        let spacing = Spacing::around(self.input.space.origin, &place);
+        outlines.clear();
+        self.casters.walk(
+            spacing,
+            outlines,
+            |_, around| around.overlaps_xy(&place),
+            |outlines, _, bounds, light| {
+                if spacing.widest(light).overlaps_xy(&place) && shadows(bounds) {
+                    outlines.push(outline(light));
+                }
+            },
+        );
+        for part in self.parts.iter().filter(|part| shadows(&part.bounds)) {
+            outlines.push(outline(&part.light));
+        }
+        // Sums depend on the order of what is added.
+        outlines.sort_unstable_by(f64::total_cmp);
+        let edges = outlines.iter().sum::<f64>();
         edges.is_finite().then_some(edges)
     }
 }

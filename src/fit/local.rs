@@ -256,6 +256,10 @@ impl ViewFrame<'_> {
             max: local.max.truncate(),
             nearest: -local.max.z,
             farthest: -local.min.z,
+            coordinate: {
+                let corners = bounds.min.abs().max(bounds.max.abs()).max_element();
+                f64::from(corners) + self.light.abs().max_element()
+            },
         }
     }
 }
@@ -266,6 +270,17 @@ struct Span {
     max: DVec2,
     nearest: f64,
     farthest: f64,
+    /// Is the largest render coordinate that they are computed from.
+    coordinate: f64,
+}
+
+impl Span {
+    /// Returns more than tangents of points in the box may be off: so it does not matter which of
+    /// several equal ones is found first.
+    fn rounding(&self) -> f64 {
+        let widest = self.min.abs().max(self.max.abs()).max_element() / self.nearest;
+        64.0 * f64::EPSILON * (1.0 + widest) * (self.coordinate / self.nearest)
+    }
 }
 
 impl Extent {
@@ -280,8 +295,8 @@ impl Extent {
         let (low_near, low_far) = at(span.min);
         let (high_near, high_far) = at(span.max);
         span.nearest > 0.0
-            && self.min.cmple(low_near.min(low_far)).all()
-            && self.max.cmpge(high_near.max(high_far)).all()
+            && self.min.cmple(low_near.min(low_far) - span.rounding()).all()
+            && self.max.cmpge(high_near.max(high_far) + span.rounding()).all()
     }
 }
 

@@ -6,7 +6,7 @@ use crate::cast::{FrameCasters, ViewDraws};
 use crate::check;
 use crate::fit::{
     CascadeLayout, DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, LightSpace,
-    MAX_CASCADES, Receivers, Region, TexelRect,
+    MAX_CASCADES, Region, TexelRect,
 };
 use crate::light::distance_limit::{distance_limit, shadowed_texels};
 use crate::light::large_triangles::depth_reach;
@@ -258,12 +258,9 @@ impl DirectionalShadow {
                 origin: frame.origin,
             },
             region: frame.region,
-            casters: frame.casters.bounds,
-            shapes: frame.casters.shapes,
-            receivers: Receivers {
-                bounds: frame.receivers,
-                casters: frame.receiver_casters,
-            },
+            casters: frame.casters.casting(),
+            shapes: frame.casters.shapes(),
+            receivers: frame.receivers,
         };
         let fit = self.fit.fit(&input, &self.limits, &mut self.scratch)?;
         let views = self.drawn_views(&fit, &input, &frame.casters)?;

@@ -212,7 +212,7 @@ impl LocalLights {
                 * border(maps.map_size(), maps.sampling().border_texels()),
             looks_around: maps.sampling().filter.directions().is_some(),
             seen: frame.seen,
-            casters: frame.casters.bounds,
+            casters: frame.casters.casting(),
             receivers: frame.receivers,
             map_size: maps.map_size(),
             margin_texels: maps.sampling().margin_texels(),

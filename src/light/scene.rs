@@ -3,9 +3,9 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::cast::{BrokenBounds, CasterAnswers, FrameCasters, ShadowCaster, sound_bounds};
+use crate::cast::{BrokenBounds, CasterAnswers, Casters, FrameCasters, sound_bounds};
 use crate::check;
-use crate::fit::{CameraFrustum, HalfSpaces, Region};
+use crate::fit::{CameraFrustum, HalfSpaces, Receivers, Region};
 use crate::{Aabb, CameraView, ShadowError};
 
 /// Selects the receivers for which the shadows of a frame are rendered. Maps cover no other
@@ -56,9 +56,10 @@ pub struct ShadowFrameDescriptor<'d, 'c> {
     pub origin: DVec3,
     /// Selects the receivers for which the shadows are rendered.
     pub coverage: Coverage<'d>,
-    /// Lists all objects that may cast. All of them receive as well, unless
-    /// [`ShadowCaster::receives`] returns false.
-    pub casters: &'c [&'c dyn ShadowCaster],
+    /// Holds all objects that may cast: a list, or a [`CasterSet`](crate::CasterSet) in scenes of
+    /// many. All of them receive as well, unless
+    /// [`ShadowCaster::receives`](crate::ShadowCaster::receives) returns false.
+    pub casters: Casters<'c>,
     /// Lists the bounds, in render space, of the surfaces that receive and do not cast. Each must
     /// be finite or empty; others are left out of the frame and named by
     /// [`ShadowFrame::broken_bounds`]. A surface that is missing here may lie outside the maps, and
@@ -72,7 +73,6 @@ pub struct ShadowScene {
     answers: CasterAnswers,
     broken: Vec<BrokenBounds>,
     receivers: Vec<Aabb>,
-    receiver_casters: Vec<Option<u32>>,
     cameras: Vec<CameraFrustum>,
     seen: Vec<HalfSpaces>,
 }
@@ -84,9 +84,10 @@ impl ShadowScene {
     }
 
     /// Checks a frame and collects the bounds of its casters, once for all lights that are recorded
-    /// with it. The methods of every caster but [`pipeline`](ShadowCaster::pipeline) and
-    /// [`draw`](ShadowCaster::draw) are called here; while the lights are recorded, only these two
-    /// are called.
+    /// with it. The methods of every caster of a list but
+    /// [`pipeline`](crate::ShadowCaster::pipeline) and [`draw`](crate::ShadowCaster::draw) are
+    /// called here; while the lights are recorded, only these two are called. Of a set, none is
+    /// called here.
     ///
     /// # Errors
     /// Returns [`ShadowError`] for an origin that is not finite, for a camera whose matrices are
@@ -123,16 +124,11 @@ impl ShadowScene {
             let place = ("ShadowFrameDescriptor::receivers", index);
             sound_bounds(place, *bounds, &mut self.broken)
         }));
-        self.receiver_casters.clear();
-        self.receiver_casters.resize(self.receivers.len(), None);
-        let casters = self.answers.ask(
+        let casters = FrameCasters::ask(
             "ShadowFrameDescriptor::casters",
             descriptor.casters,
+            &mut self.answers,
             &mut self.broken,
-            |caster, bounds| {
-                self.receivers.push(bounds);
-                self.receiver_casters.push(Some(caster));
-            },
         );
         Ok(ShadowFrame {
             origin: descriptor.origin,
@@ -143,8 +139,10 @@ impl ShadowScene {
             },
             seen: &self.seen,
             casters,
-            receivers: &self.receivers,
-            receiver_casters: &self.receiver_casters,
+            receivers: Receivers {
+                given: &self.receivers,
+                casters: casters.receiving(),
+            },
         })
     }
 }
@@ -158,11 +156,7 @@ pub struct ShadowFrame<'a> {
     /// of these.
     pub(crate) seen: &'a [HalfSpaces],
     pub(crate) casters: FrameCasters<'a>,
-    /// Holds the bounds of all receivers.
-    pub(crate) receivers: &'a [Aabb],
-    /// Holds, for each receiver, the index of the caster whose surface it is, or `None` where it is
-    /// not a caster's.
-    pub(crate) receiver_casters: &'a [Option<u32>],
+    pub(crate) receivers: Receivers<'a>,
 }
 
 impl ShadowFrame<'_> {
