@@ -73,11 +73,6 @@ impl Content {
             ..self
         }
     }
-
-    /// Returns whether the fit finds the same in two states.
-    pub fn fits_as(&self, other: &Self) -> bool {
-        self.source == other.source && self.fit == other.fit
-    }
 }
 
 /// Holds the answers of casters. A caster with bounds that are neither finite nor empty counts as

@@ -9,7 +9,9 @@ use crate::fit::axes::LightBox;
 use crate::fit::caster_parts::CasterPart;
 use crate::fit::directional_input::{FitInput, FitLimits, Region};
 use crate::fit::extruded_rect::push_extruded_rect;
-use crate::fit::map_rect::{HeldBounds, HeldDepth, HeldRect, LightSpaceBounds, MapRectRequest};
+use crate::fit::map_rect::{
+    BoundsDemand, HeldBounds, HeldDepth, HeldRect, LightSpaceBounds, MapRectRequest,
+};
 use crate::fit::region::HalfSpaces;
 use crate::fit::spacing::Spacing;
 use crate::fit::stability::Stability;
@@ -48,13 +50,14 @@ pub(crate) struct Cascade<'a> {
 impl Cascade<'_> {
     /// Returns the light-space bounds for receivers in `required`: the area, seen from the light,
     /// that both receivers and casters cover. Where rounding makes it doubtful whether a caster
-    /// reaches the receivers, it counts as reaching them. Returns `None` where no caster does.
+    /// reaches the receivers, it counts as reaching them. The second value is what was asked of the
+    /// bounds. Returns `None` where no caster does.
     pub fn fit(
         &self,
         required: &LightBox,
         spacing: Spacing,
         held: Option<&HeldBounds>,
-    ) -> Option<HeldBounds> {
+    ) -> Option<(HeldBounds, BoundsDemand)> {
         let limits = self.limits;
         let shadows = self.shadows(required, required, spacing)?;
         let received = if self.follows_casters() {
@@ -81,24 +84,29 @@ impl Cascade<'_> {
         };
         let rect = HeldRect::fit(&request, held.map(|held| &held.rect));
         let texel = rect.rect.texel.max_element();
-        let depth = |near: f64| {
-            HeldDepth::fit(
-                received.min.z,
-                near,
-                texel.max(spacing.least_depth()),
-                held.map(|held| &held.depth),
-            )
-        };
+        let least_depth = texel.max(spacing.least_depth());
+        let held_depth = held.map(|held| &held.depth);
+        let depth = |near: f64| HeldDepth::fit(received.min.z, near, least_depth, held_depth);
+        let highest = shadows.max.z.max(received.min.z);
         let reaching = LightSpaceBounds {
             rect: rect.rect,
-            depth: depth(shadows.max.z.max(received.min.z)).depth,
+            depth: depth(highest).depth,
         };
         let nearest_allowed = received.max.z + MAX_TEXELS_TO_NEAR * texel;
         let nearest = self.nearest_caster(&reaching, spacing, received.min.z, nearest_allowed);
-        Some(HeldBounds {
+        let bounds = HeldBounds {
             rect,
             depth: depth(nearest),
-        })
+        };
+        let demand = BoundsDemand {
+            request,
+            far: received.min.z,
+            highest,
+            nearest,
+            least_depth,
+            reaching: reaching.depth,
+        };
+        Some((bounds, demand))
     }
 
     /// Returns whether the bounds hold no more of the receivers than what casters reach.

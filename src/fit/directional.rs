@@ -12,7 +12,7 @@ use crate::fit::footprint::{FootprintScratch, SliceReport};
 use crate::fit::layout::HeldLayout;
 use crate::fit::layout_choice::{Layout, Prediction};
 use crate::fit::layout_samples::{Sample, Sampled};
-use crate::fit::map_rect::{HeldBounds, HeldDepth, LightSpaceBounds};
+use crate::fit::map_rect::{BoundsDemand, HeldBounds, HeldDepth, LightSpaceBounds};
 use crate::fit::required::{camera_slice, checked_spacing, held_depths, required_box};
 use crate::fit::spacing::Spacing;
 use crate::fit::split::MAX_CASCADES;
@@ -32,6 +32,10 @@ pub(crate) struct DirectionalFit {
     /// Has one entry per cascade, `None` for a cascade in which nothing can cast a shadow.
     pub light_bounds: [Option<LightSpaceBounds>; MAX_CASCADES],
     held: [Option<HeldBounds>; MAX_CASCADES],
+    /// Holds what was asked of each of `light_bounds`.
+    demands: [Option<BoundsDemand>; MAX_CASCADES],
+    /// Bounds what was visible.
+    visible: Option<SeenBounds>,
     /// Holds the axes of the light in the last frame.
     axes: Option<LightAxes>,
     /// Holds the depths along the view between which receivers are visible.
@@ -101,7 +105,9 @@ impl DirectionalFit {
             Self::default()
         };
         let mut next = history.clone();
+        next.demands = Default::default();
         next.axes = Some(input.space.axes);
+        next.visible = Some(visible);
         let depths = held_depths(&visible, history.held_depths.as_ref());
         next.held_depths = depths.or(history.held_depths);
         let limits = &next.find_layout(input, limits, &visible, scratch);
@@ -130,6 +136,8 @@ impl DirectionalFit {
                 }
                 _ => None,
             };
+            let (held_bounds, demand) = held_bounds.unzip();
+            next.demands[cascade] = demand;
             next.held[cascade] = held_bounds.or(next.held[cascade]);
             let light_bounds = held_bounds.map(|held| held.bounds());
             next.light_bounds[cascade] = light_bounds;
@@ -139,6 +147,32 @@ impl DirectionalFit {
             });
         }
         Ok(next)
+    }
+
+    /// Returns the fit for a frame in which nothing differs from the last. Only the time counts for
+    /// which extents have been larger than needed. Returns `None` where the whole fit is needed,
+    /// because that time is over or a layout is to be chosen.
+    pub fn again(&self) -> Option<Self> {
+        let mut next = self.clone();
+        let depths = held_depths(self.visible.as_ref()?, self.held_depths.as_ref());
+        next.held_depths = depths.or(self.held_depths);
+        let same_depths = match (&next.held_depths, &self.held_depths) {
+            (Some(next), Some(held)) => next.depth == held.depth,
+            (next, held) => next.is_none() == held.is_none(),
+        };
+        if !same_depths {
+            return None;
+        }
+        if let Some(layout) = &self.layout {
+            next.layout = Some(layout.without_prediction()?);
+        }
+        for cascade in 0..MAX_CASCADES {
+            if self.light_bounds[cascade].is_some() {
+                let demand = self.demands[cascade].as_ref()?;
+                next.held[cascade] = Some(self.held[cascade]?.again(demand)?);
+            }
+        }
+        Some(next)
     }
 
     /// Returns the settings for this frame, with the layout that is found where none is given.

@@ -1,9 +1,11 @@
 //! Defines the input of a frame for all lights: origin, cameras, casters and receivers, which are
 //! checked and collected once.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use glam::{DVec3, Vec3};
 
-use crate::cast::{BrokenBounds, CasterAnswers, Casters, FrameCasters, sound_bounds};
+use crate::cast::{BrokenBounds, CasterAnswers, Casters, Content, FrameCasters, sound_bounds};
 use crate::check;
 use crate::fit::{CameraFrustum, HalfSpaces, Receivers, Region};
 use crate::{Aabb, CameraView, ShadowError};
@@ -67,6 +69,25 @@ pub struct ShadowFrameDescriptor<'d, 'c> {
     pub receivers: &'d [Aabb],
 }
 
+/// Identifies the content of a frame: two frames with equal ones are equal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct FrameContent {
+    casters: Content,
+    /// Is unique in the process for all but the casters.
+    surroundings: u64,
+}
+
+/// Is all that a frame is made of, apart from its casters and the list of its receivers.
+#[derive(Clone, Debug, PartialEq)]
+struct Surroundings {
+    origin: DVec3,
+    cameras: Vec<CameraView>,
+    /// Is `None` where the coverage is a list of cameras, empty where it is everything.
+    bounds: Option<Option<Aabb>>,
+}
+
+static NEXT_SURROUNDINGS: AtomicU64 = AtomicU64::new(0);
+
 /// Holds the scene that lights share. It reuses the memory of its lists from frame to frame.
 #[derive(Debug, Default)]
 pub struct ShadowScene {
@@ -75,6 +96,10 @@ pub struct ShadowScene {
     receivers: Vec<Aabb>,
     cameras: Vec<CameraFrustum>,
     seen: Vec<HalfSpaces>,
+    /// Holds the surroundings of the last frame, with their number.
+    surroundings: Option<(Surroundings, u64)>,
+    /// Holds the receivers of the last frame as they were given.
+    given_receivers: Vec<Aabb>,
 }
 
 impl ShadowScene {
@@ -98,6 +123,7 @@ impl ShadowScene {
         &'a mut self,
         descriptor: &ShadowFrameDescriptor<'_, 'a>,
     ) -> Result<ShadowFrame<'a>, ShadowError> {
+        let surroundings = self.note_surroundings(descriptor);
         check::finite_vector("ShadowFrameDescriptor::origin", descriptor.origin)?;
         self.cameras.clear();
         self.seen.clear();
@@ -131,6 +157,10 @@ impl ShadowScene {
             &mut self.broken,
         );
         Ok(ShadowFrame {
+            content: FrameContent {
+                casters: casters.content(),
+                surroundings,
+            },
             origin: descriptor.origin,
             region: match descriptor.coverage {
                 Coverage::Cameras(_) => Region::Cameras(&self.cameras),
@@ -145,11 +175,45 @@ impl ShadowScene {
             },
         })
     }
+
+    /// Returns the number of the surroundings of a frame, a new one unless they are those of the
+    /// last frame.
+    fn note_surroundings(&mut self, descriptor: &ShadowFrameDescriptor<'_, '_>) -> u64 {
+        let (cameras, bounds) = match descriptor.coverage {
+            Coverage::Cameras(cameras) => (cameras, None),
+            Coverage::Bounds(bounds) => (&[][..], Some(Some(bounds))),
+            Coverage::Everything => (&[][..], Some(None)),
+        };
+        if let Some((last, number)) = &self.surroundings {
+            if last.origin == descriptor.origin
+                && last.cameras == cameras
+                && last.bounds == bounds
+                && self.given_receivers == descriptor.receivers
+            {
+                return *number;
+            }
+        }
+        let number = NEXT_SURROUNDINGS.fetch_add(1, Ordering::Relaxed);
+        self.given_receivers.clear();
+        self.given_receivers.extend_from_slice(descriptor.receivers);
+        let mut list = self.surroundings.take().map(|(last, _)| last.cameras);
+        let list = list.get_or_insert_default();
+        list.clear();
+        list.extend_from_slice(cameras);
+        let surroundings = Surroundings {
+            origin: descriptor.origin,
+            cameras: std::mem::take(list),
+            bounds,
+        };
+        self.surroundings = Some((surroundings, number));
+        number
+    }
 }
 
 /// Holds a checked frame of a [`ShadowScene`]. Lights are recorded with it.
 #[derive(Clone, Copy)]
 pub struct ShadowFrame<'a> {
+    pub(crate) content: FrameContent,
     pub(crate) origin: DVec3,
     pub(crate) region: Region<'a>,
     /// Holds the same region as intersections of half-spaces: receivers count where they lie in one
