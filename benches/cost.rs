@@ -14,7 +14,7 @@ use shadow_support::clock::Clock;
 use shadow_support::gpu::{Gpu, GpuRequest};
 
 use growth::stage::Stage;
-use growth::{cpu, device, faces, motion};
+use growth::{cpu, device, faces, motion, retained};
 
 mod growth;
 
@@ -30,6 +30,9 @@ struct Arguments {
     /// Sets the texels per side of the largest map.
     #[arg(long, default_value_t = 8192)]
     map_size: u32,
+    /// Measures retained sets of casters and nothing else.
+    #[arg(long)]
+    only_retained: bool,
     /// Is passed by `cargo bench`.
     #[arg(long, hide = true)]
     bench: bool,
@@ -53,6 +56,10 @@ fn main() -> ExitCode {
         gpu: &gpu,
         repeats: arguments.repeats.max(1),
     };
+    retained::retained(&stage, arguments.casters);
+    if arguments.only_retained {
+        return ExitCode::SUCCESS;
+    }
     cpu::casters(&stage, arguments.casters);
     cpu::culling(&stage, arguments.casters);
     cpu::lights(&stage);

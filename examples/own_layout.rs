@@ -19,7 +19,7 @@ use shadow_support::gpu::{Gpu, GpuRequest};
 use shadow_support::readback;
 use wgpu_shadows::{
     CasterPipeline, Coverage, DirectionalLight, DirectionalShadow, MeshCaster, OmniLight,
-    OmniShadow, ShadowCaster, ShadowFrameDescriptor, ShadowScene, caster::CasterPipelineDescriptor,
+    OmniShadow, ShadowCaster, Casters, ShadowFrameDescriptor, ShadowScene, caster::CasterPipelineDescriptor,
     caster::CasterVertex, caster::ModelTransform, caster::PositionAttribute, shader,
 };
 
@@ -110,7 +110,7 @@ fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
     let frame = scene.frame(&ShadowFrameDescriptor {
         origin: DVec3::ZERO,
         coverage: Coverage::Cameras(&[camera.view]),
-        casters: &casters,
+        casters: Casters::List(&casters),
         receivers: &[],
     })?;
     let mut encoder = gpu.device.create_command_encoder(&Default::default());

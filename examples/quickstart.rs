@@ -13,7 +13,7 @@ use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu_shadows::{
     Aabb, CameraView, CasterPipeline, Coverage, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, MeshCaster, ShadowBindings, ShadowBindingsDescriptor,
-    ShadowCaster, ShadowFrameDescriptor, ShadowScene, caster::CasterPipelineDescriptor,
+    ShadowCaster, Casters, ShadowFrameDescriptor, ShadowScene, caster::CasterPipelineDescriptor,
     caster::MeshCasterDescriptor, caster::MeshIndices,
 };
 
@@ -103,7 +103,7 @@ fn draw(engine: &Engine, path: &Path) -> Result<(), Box<dyn Error>> {
     let frame = scene.frame(&ShadowFrameDescriptor {
         origin: DVec3::ZERO,
         coverage: Coverage::Cameras(&[camera]),
-        casters: &casters,
+        casters: Casters::List(&casters),
         receivers: &[unit_cube.transformed(floor)],
     })?;
     let light = DirectionalLight::new(-engine.toward_light);

@@ -36,7 +36,12 @@
 //!     ) -> Result<(), ShadowError> {
 //!         let cameras = [camera];
 //!         let coverage = Coverage::Cameras(&cameras);
-//!         let frame = ShadowFrameDescriptor { origin: DVec3::ZERO, coverage, casters, receivers: &[] };
+//!         let frame = ShadowFrameDescriptor {
+//!             origin: DVec3::ZERO,
+//!             coverage,
+//!             casters: Casters::List(casters),
+//!             receivers: &[],
+//!         };
 //!         let light = DirectionalLight::new(Vec3::new(0.4, -0.8, 0.2));
 //!         self.sun.record(encoder, &self.scene.frame(&frame)?, &light)?;
 //!         Ok(())
@@ -95,6 +100,25 @@
 //! each gets. [`DirectionalShadowDescriptor::blend`] hides where one ends. [`ShadowMaps::report`]
 //! tells how fine the maps of the last frame are and what was drawn; [`debug::DebugView`] draws the
 //! maps.
+//!
+//! # A list of casters or a set
+//!
+//! [`ShadowFrameDescriptor::casters`] is a [`Casters`]. With [`Casters::List`] the engine collects
+//! its casters for each frame; all of them are asked, and each light looks at all of them. That is
+//! the simplest way, and the cheapest for scenes of up to some hundred casters.
+//!
+//! With [`Casters::Set`] the engine keeps its casters in a [`CasterSet`], inserts and removes them,
+//! and says by [`CasterSet::update`] which of them changed. A tree finds those that a light needs,
+//! so that a frame costs what changed and what is seen: thousands of casters, of which most stand
+//! still or are out of sight, belong in a set. What is forgotten to be told is the price: a caster
+//! that moves without an `update` leaves its shadow behind, where a list would have asked it. Since
+//! bounds are in render space, an engine whose `origin` follows the camera has to update all casters
+//! whenever the origin moves; it moves the origin rarely, or uses a list.
+//!
+//! Both give the same maps, bit for bit. The order of casters means nothing, neither that of a list
+//! nor that in which a set was filled: a view is kept while the revisions of its casters are the
+//! same. Where a whole frame is as the one before, with the same cameras and lights, lights do
+//! nothing at all.
 //!
 //! # Which filter and bias
 //!
@@ -248,7 +272,9 @@ mod receive;
 pub mod shader;
 
 pub use aabb::Aabb;
-pub use cast::{CasterPipeline, MeshCaster, Revision, ShadowCaster};
+pub use cast::{
+    CasterId, CasterPipeline, CasterSet, Casters, MeshCaster, Revision, ShadowCaster,
+};
 pub use error::ShadowError;
 pub use fit::{CameraView, CascadeLayout, CascadeSplit, ShadowView, Stability};
 pub use gpu::DepthFormat;
@@ -268,7 +294,7 @@ pub use {glam, wgpu};
 pub mod caster {
     pub use crate::cast::{
         CasterPipelineDescriptor, CasterVertex, MeshCasterDescriptor, MeshIndices, ModelTransform,
-        PositionAttribute, caster_shape, is_closed_solid,
+        PositionAttribute, RetainedCasters, caster_shape, is_closed_solid,
     };
     pub use crate::fit::CasterShape;
 }

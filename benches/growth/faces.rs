@@ -10,7 +10,7 @@ use shadow_support::mesh::Mesh;
 use shadow_support::random::Random;
 use wgpu_shadows::{
     Aabb, CasterPipeline, Coverage, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor,
-    Revision, ShadowCaster, ShadowFrameDescriptor, ShadowScene, ShadowView,
+    Revision, ShadowCaster, Casters, ShadowFrameDescriptor, ShadowScene, ShadowView,
     caster::CasterPipelineDescriptor, caster::MeshCasterDescriptor, caster::MeshIndices,
     report::ShadowReport,
 };
@@ -152,7 +152,7 @@ impl Lamp {
         let frame = self.scene.frame(&ShadowFrameDescriptor {
             origin: DVec3::ZERO,
             coverage: Coverage::Everything,
-            casters: &list,
+            casters: Casters::List(&list),
             receivers: &[Aabb::new(Vec3::splat(-15.0), Vec3::splat(15.0))],
         });
         let frame = frame.expect("a valid frame");

@@ -3,7 +3,8 @@
 use glam::DVec3;
 use shadow_support::gpu::Gpu;
 use wgpu_shadows::{
-    Coverage, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowCaster, ShadowScene,
+    Casters, Coverage, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowCaster,
+    ShadowFrameDescriptor, ShadowScene,
 };
 
 use super::counts::Counts;
@@ -38,13 +39,14 @@ impl Lamps {
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        casters: &[&dyn ShadowCaster],
+        casters: Casters<'_>,
         half: f32,
     ) -> Counts {
-        let frame = self
-            .scene
-            .frame(&stage::frame(casters, Coverage::Everything))
-            .expect("a valid frame");
+        let frame = ShadowFrameDescriptor {
+            casters,
+            ..stage::frame(&[], Coverage::Everything)
+        };
+        let frame = self.scene.frame(&frame).expect("a valid frame");
         let count = self.shadows.len() as f64;
         let mut counts = Counts::default();
         for (index, shadow) in (0..).map(f64::from).zip(&mut self.shadows) {
@@ -68,6 +70,6 @@ impl Lamps {
         half: f32,
     ) -> Counts {
         self.shadows.iter_mut().for_each(OmniShadow::invalidate);
-        self.record(encoder, casters, half)
+        self.record(encoder, Casters::List(casters), half)
     }
 }

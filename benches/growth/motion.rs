@@ -5,7 +5,7 @@
 //! costs less than drawing them.
 
 use glam::Vec3;
-use wgpu_shadows::{Coverage, Filter, ShadowCaster};
+use wgpu_shadows::{Casters, Coverage, Filter, ShadowCaster};
 
 use super::counts::Counts;
 use super::crowd::{self, Crowd};
@@ -131,7 +131,7 @@ impl Lit for Lamps {
         encoder: &mut wgpu::CommandEncoder,
         casters: &[&dyn ShadowCaster],
     ) -> Counts {
-        self.record(encoder, casters, crowd::half_side(CASTERS))
+        self.record(encoder, Casters::List(casters), crowd::half_side(CASTERS))
     }
 }
 

@@ -36,8 +36,23 @@ pub fn measure<P, R>(
             (microseconds, allocations as f64)
         })
         .collect();
+    let efforts = runs.into_iter().map(|(microseconds, allocations)| Effort {
+        microseconds,
+        allocations,
+    });
+    median(&efforts.collect::<Vec<_>>())
+}
+
+/// Returns the medians of some efforts, NaN if there are none.
+pub fn median(efforts: &[Effort]) -> Effort {
+    if efforts.is_empty() {
+        return Effort {
+            microseconds: f64::NAN,
+            allocations: f64::NAN,
+        };
+    }
     Effort {
-        microseconds: Spread::of(runs.iter().map(|run| run.0)).median,
-        allocations: Spread::of(runs.iter().map(|run| run.1)).median,
+        microseconds: Spread::of(efforts.iter().map(|effort| effort.microseconds)).median,
+        allocations: Spread::of(efforts.iter().map(|effort| effort.allocations)).median,
     }
 }

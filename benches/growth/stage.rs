@@ -7,7 +7,7 @@ use shadow_support::gpu::Gpu;
 use shadow_support::measure::statistics::Spread;
 use wgpu_shadows::{
     CameraView, Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter,
-    ShadowCaster, ShadowFrameDescriptor, ShadowScene, report::ShadowReport,
+    ShadowCaster, Casters, ShadowFrameDescriptor, ShadowScene, report::ShadowReport,
 };
 
 use super::processor;
@@ -114,7 +114,7 @@ pub fn frame<'d, 'c>(
     ShadowFrameDescriptor {
         origin: DVec3::ZERO,
         coverage,
-        casters,
+        casters: Casters::List(casters),
         receivers: &[],
     }
 }

@@ -11,7 +11,7 @@ use shadow_support::gpu::Gpu;
 use shadow_support::readback;
 use wgpu_shadows::{
     Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, ShadowBindings,
-    ShadowBindingsDescriptor, ShadowCaster, ShadowFrameDescriptor, ShadowScene, debug::DebugImage,
+    ShadowBindingsDescriptor, ShadowCaster, Casters, ShadowFrameDescriptor, ShadowScene, debug::DebugImage,
     report::ShadowReport,
 };
 
@@ -123,7 +123,7 @@ impl Sun {
         let frame = self.shadow_scene.frame(&ShadowFrameDescriptor {
             origin: DVec3::ZERO,
             coverage: Coverage::Cameras(&[camera.view]),
-            casters,
+            casters: Casters::List(casters),
             receivers: &[town.ground],
         })?;
         self.shadow.record(&mut encoder, &frame, &light)?;

@@ -7,7 +7,7 @@ use example_support::gltf_file::scene::{Light, LightKind, Scene};
 use shadow_support::gpu::Gpu;
 use wgpu_shadows::{
     Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniLight,
-    ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowFrameDescriptor, ShadowMaps,
+    ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, Casters, ShadowFrameDescriptor, ShadowMaps,
     ShadowScene, SpotLight, pool::OmniShadowPool, pool::PoolDescriptor, pool::PoolLight,
     pool::ShadowSlot, pool::SpotShadowPool, report::ShadowReport,
 };
@@ -150,7 +150,7 @@ impl SceneLights {
             .frame(&ShadowFrameDescriptor {
                 origin: scene.origin,
                 coverage: Coverage::Cameras(&[camera]),
-                casters,
+                casters: Casters::List(casters),
                 receivers: &[],
             })
             .map_err(|error| error.to_string())?;

@@ -6,7 +6,7 @@ use example_support::camera::Camera;
 use glam::DVec3;
 use wgpu_shadows::{
     Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, ShadowBindings,
-    ShadowBindingsDescriptor, ShadowCaster, ShadowFrameDescriptor, ShadowScene,
+    ShadowBindingsDescriptor, ShadowCaster, Casters, ShadowFrameDescriptor, ShadowScene,
     pool::OmniShadowPool, pool::PoolDescriptor, pool::PoolLight, pool::ShadowSlot,
     pool::SpotShadowPool, report::ShadowReport,
 };
@@ -90,7 +90,7 @@ impl Shadows {
         let frame = self.scene.frame(&ShadowFrameDescriptor {
             origin: DVec3::ZERO,
             coverage: Coverage::Cameras(&[camera.view]),
-            casters,
+            casters: Casters::List(casters),
             receivers: &[],
         })?;
         let sun = DirectionalLight::new(-TOWARD_SUN);

@@ -9,7 +9,7 @@ use shadow_support::gpu::Gpu;
 use shadow_support::readback;
 use wgpu_shadows::{
     Coverage, Filter, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowBindings,
-    ShadowBindingsDescriptor, ShadowCaster, ShadowError, ShadowFrameDescriptor, ShadowScene,
+    ShadowBindingsDescriptor, ShadowCaster, ShadowError, Casters, ShadowFrameDescriptor, ShadowScene,
     debug::DebugImage, report::ShadowReport,
 };
 
@@ -149,7 +149,7 @@ impl Lamp {
         let frame = self.shadow_scene.frame(&ShadowFrameDescriptor {
             origin: DVec3::ZERO,
             coverage,
-            casters,
+            casters: Casters::List(casters),
             receivers: &room.walls(),
         })?;
         let light = OmniLight {

@@ -36,7 +36,7 @@ use example_support::{arguments, map_picture, picture};
 use glam::DVec3;
 use shadow_support::gpu::{Gpu, GpuRequest};
 use wgpu_shadows::{
-    DirectionalShadow, ShadowCaster, ShadowFrameDescriptor, ShadowScene, debug::DebugImage,
+    DirectionalShadow, ShadowCaster, Casters, ShadowFrameDescriptor, ShadowScene, debug::DebugImage,
 };
 
 use lookup::Lookup;
@@ -85,7 +85,7 @@ fn draw(gpu: &Gpu, scene: &Scene, step: &Step, path: &Path) -> Result<String, Bo
     let frame = shadow_scene.frame(&ShadowFrameDescriptor {
         origin: DVec3::ZERO,
         coverage: step.region.coverage(&[camera.view]),
-        casters: &casters,
+        casters: Casters::List(&casters),
         receivers: &[],
     })?;
     let mut encoder = gpu.device.create_command_encoder(&Default::default());

@@ -7,12 +7,12 @@ use crate::{Aabb, ShadowView};
 /// Identifies what a caster would draw and counts its versions, so that a map is kept while nothing
 /// in it changes.
 ///
-/// Two frames share one depth render of a view if the view's casters have equal revisions in equal
-/// order and its fit is unchanged. Whatever changes a pixel of the depth map must change the
+/// Two frames share one depth render of a view if the view's casters have equal revisions, in
+/// whatever order, and its fit is unchanged. Whatever changes a pixel of the depth map must change the
 /// version: vertices, world transform, bones, alpha texture, pipeline. A move of the engine's
 /// `origin` alone needs no new version. A version that stays the same while the geometry changes
 /// leaves a stale shadow behind; a version that changes without need costs a depth pass.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Revision {
     origin: Origin,
     id: u64,
@@ -20,7 +20,7 @@ pub struct Revision {
 }
 
 /// Tells who assigned the id of a revision, so that ids of different sources never collide.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 enum Origin {
     Engine,
     /// Marks the ids that [`MeshCaster`](crate::MeshCaster)s assign to themselves.
@@ -144,3 +144,55 @@ pub trait ShadowCaster {
         None
     }
 }
+
+/// Implements the trait for a pointer to a caster.
+macro_rules! forward {
+    ($pointer:ty) => {
+        impl<C: ShadowCaster + ?Sized> ShadowCaster for $pointer {
+            fn bounds(&self) -> Aabb {
+                (**self).bounds()
+            }
+
+            fn pipeline(&self) -> &CasterPipeline {
+                (**self).pipeline()
+            }
+
+            fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &ShadowView) {
+                (**self).draw(pass, view);
+            }
+
+            fn casts(&self) -> bool {
+                (**self).casts()
+            }
+
+            fn receives(&self) -> bool {
+                (**self).receives()
+            }
+
+            fn shape(&self) -> CasterShape {
+                (**self).shape()
+            }
+
+            fn keeps_pass_state(&self) -> bool {
+                (**self).keeps_pass_state()
+            }
+
+            fn same_in_every_view(&self) -> bool {
+                (**self).same_in_every_view()
+            }
+
+            fn triangles(&self) -> u32 {
+                (**self).triangles()
+            }
+
+            fn revision(&self) -> Option<Revision> {
+                (**self).revision()
+            }
+        }
+    };
+}
+
+forward!(&C);
+forward!(Box<C>);
+forward!(std::sync::Arc<C>);
+forward!(std::rc::Rc<C>);

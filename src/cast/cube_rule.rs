@@ -30,20 +30,26 @@ pub(crate) fn one_pass_casters(
     casters: &FrameCasters<'_>,
 ) -> Option<Vec<u32>> {
     // Each caster has one bit for each view that draws it.
-    let mut drawn_by = vec![0u8; casters.len()];
-    for (view, draws) in views.iter().enumerate() {
-        for &caster in &draws.casters {
-            drawn_by[caster as usize] |= 1 << view;
+    let drawn = views.iter().enumerate();
+    let drawn = drawn.flat_map(|(view, draws)| {
+        let bit = move |&caster: &u32| (caster, 1u8 << view);
+        draws.casters.iter().map(bit)
+    });
+    let mut drawn: Vec<(u32, u8)> = drawn.collect();
+    drawn.sort_unstable();
+    drawn.dedup_by(|next, first| {
+        let same = next.0 == first.0;
+        if same {
+            first.1 |= next.1;
         }
-    }
+        same
+    });
+    let boxes = casters.casting();
     let passes_saved = (views.len() as u64).saturating_sub(1);
     let (mut draws_saved, mut triangles) = (0, 0);
-    let mut union = Vec::new();
-    let all = casters.facts.iter().zip(casters.bounds).zip(drawn_by);
-    for (index, ((facts, bounds), drawn_by)) in (0u32..).zip(all) {
-        if drawn_by == 0 {
-            continue;
-        }
+    let mut union = Vec::with_capacity(drawn.len());
+    for (index, drawn_by) in drawn {
+        let (facts, bounds) = (casters.facts(index), boxes.at(index));
         let own_triangles = u64::from(facts.triangles);
         let in_others = |bounds: &Aabb| {
             let others = views.iter().enumerate();

@@ -1,17 +1,9 @@
 //! Holds the casters of a frame with the values that their methods returned.
 
 use crate::Aabb;
-use crate::cast::{Revision, ShadowCaster};
-use crate::fit::CasterShape;
-
-/// Holds what the methods of a caster returned in a frame, apart from its bounds.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct CasterFacts {
-    pub revision: Option<Revision>,
-    pub triangles: u32,
-    pub same_in_every_view: bool,
-    pub keeps_pass_state: bool,
-}
+use crate::cast::caster_answers::{CasterAnswer, CasterAnswers, CasterFacts, Content};
+use crate::cast::{Casters, ShadowCaster};
+use crate::fit::{Boxes, CasterShape};
 
 /// Names bounds of a frame that have a NaN or an infinite corner and are not empty. The object that
 /// they bound is left out of the frame: it neither casts nor receives, and all other objects keep
@@ -22,7 +14,8 @@ pub struct BrokenBounds {
     /// Is the path of the list: `ShadowFrameDescriptor::casters` or
     /// `ShadowFrameDescriptor::receivers`.
     pub field: &'static str,
-    /// Is the index in the list.
+    /// Is the index in the list, or what [`CasterId::index`](crate::CasterId::index) returns for a
+    /// caster of a set.
     pub index: usize,
     /// Is the value that was given.
     pub bounds: Aabb,
@@ -47,17 +40,13 @@ pub(crate) fn sound_bounds(
 }
 
 /// Holds the casters of a frame. Each of their methods but `pipeline` and `draw` is called once a
-/// frame, and all views use the values returned, so that a caster whose values change in between
-/// cannot contradict itself.
+/// frame, or once for each change of a caster in a set. All views use the values returned, so that
+/// a caster whose values change in between cannot contradict itself.
 #[derive(Clone, Copy)]
 pub(crate) struct FrameCasters<'a> {
-    pub casters: &'a [&'a dyn ShadowCaster],
-    /// Has one entry per caster, empty for one that does not cast.
-    pub bounds: &'a [Aabb],
-    /// Has one entry per caster.
-    pub shapes: &'a [CasterShape],
-    /// Has one entry per caster.
-    pub facts: &'a [CasterFacts],
+    casters: Casters<'a>,
+    answers: &'a CasterAnswers,
+    content: Content,
     /// Is the path of the list in the caller's frame, for errors.
     pub field: &'static str,
     /// Holds the bounds of the frame that were left out.
@@ -65,65 +54,85 @@ pub(crate) struct FrameCasters<'a> {
 }
 
 impl<'a> FrameCasters<'a> {
-    /// Returns the caster at `index` of the engine's list.
+    /// Asks the casters of a list, or takes the answers of a set. `field` is the path in the
+    /// caller's frame. Bounds that are neither finite nor empty are added to `broken`.
+    pub fn ask(
+        field: &'static str,
+        casters: Casters<'a>,
+        listed: &'a mut CasterAnswers,
+        broken: &'a mut Vec<BrokenBounds>,
+    ) -> Self {
+        let (answers, content) = match casters {
+            Casters::List(list) => {
+                for (index, caster) in (0u32..).zip(list) {
+                    listed.put(index, &CasterAnswer::of(*caster));
+                }
+                listed.truncate(list.len());
+                if listed.always_changing > 0 {
+                    listed.count_frame();
+                }
+                (&*listed, listed.content())
+            }
+            Casters::Set(set) => (set.answers(), set.content_of_frame()),
+        };
+        broken.extend(answers.broken.iter().map(|(index, bounds)| BrokenBounds {
+            field,
+            index: *index as usize,
+            bounds: *bounds,
+        }));
+        Self {
+            casters,
+            answers,
+            content,
+            field,
+            broken,
+        }
+    }
+
+    /// Returns the caster at `index` of the engine's list or set.
     pub fn caster(&self, index: u32) -> &'a dyn ShadowCaster {
-        self.casters[index as usize]
+        match self.casters {
+            Casters::List(list) => list[index as usize],
+            Casters::Set(set) => set.caster(index),
+        }
     }
 
     /// Returns what the methods of the caster at `index` returned.
     pub fn facts(&self, index: u32) -> &'a CasterFacts {
-        &self.facts[index as usize]
+        &self.answers.facts[index as usize]
     }
 
+    /// Returns the number of casters.
     pub fn len(&self) -> usize {
-        self.casters.len()
+        match self.casters {
+            Casters::List(list) => list.len(),
+            Casters::Set(set) => set.count(),
+        }
     }
-}
 
-/// Holds the values that a frame's casters returned, in lists that are reused from frame to frame.
-#[derive(Debug, Default)]
-pub(crate) struct CasterAnswers {
-    bounds: Vec<Aabb>,
-    shapes: Vec<CasterShape>,
-    facts: Vec<CasterFacts>,
-}
+    /// Returns the bounds of those that cast.
+    pub fn casting(&self) -> Boxes<'a> {
+        Boxes {
+            bounds: &self.answers.casts,
+            tree: self.answers.tree.as_ref(),
+        }
+    }
 
-impl CasterAnswers {
-    /// Calls the methods of all casters, and `receives` with the index and bounds of those that
-    /// receive. `field` is the path of the list in the caller's frame. Bounds that are neither
-    /// finite nor empty are added to `broken`.
-    pub fn ask<'a>(
-        &'a mut self,
-        field: &'static str,
-        casters: &'a [&'a dyn ShadowCaster],
-        broken: &'a mut Vec<BrokenBounds>,
-        mut receives: impl FnMut(u32, Aabb),
-    ) -> FrameCasters<'a> {
-        self.bounds.clear();
-        self.shapes.clear();
-        self.facts.clear();
-        for (index, caster) in casters.iter().enumerate() {
-            let bounds = sound_bounds((field, index), caster.bounds(), broken);
-            if caster.receives() {
-                receives(index as u32, bounds);
-            }
-            let casts = caster.casts();
-            self.bounds.push(if casts { bounds } else { Aabb::EMPTY });
-            self.shapes.push(caster.shape());
-            self.facts.push(CasterFacts {
-                revision: caster.revision(),
-                triangles: caster.triangles(),
-                same_in_every_view: caster.same_in_every_view(),
-                keeps_pass_state: caster.keeps_pass_state(),
-            });
+    /// Returns the bounds of those that receive.
+    pub fn receiving(&self) -> Boxes<'a> {
+        Boxes {
+            bounds: &self.answers.receives,
+            tree: self.answers.tree.as_ref(),
         }
-        FrameCasters {
-            casters,
-            bounds: &self.bounds,
-            shapes: &self.shapes,
-            facts: &self.facts,
-            field,
-            broken,
-        }
+    }
+
+    /// Returns the shapes by index.
+    pub fn shapes(&self) -> &'a [CasterShape] {
+        &self.answers.shapes
+    }
+
+    /// Returns the number of the state that all of this is in.
+    pub fn content(&self) -> Content {
+        self.content
     }
 }

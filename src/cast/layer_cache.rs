@@ -5,8 +5,8 @@ use crate::ShadowView;
 use crate::cast::{FrameCasters, Revision};
 use crate::fit::ViewPlacement;
 
-/// Is one view of this frame with the casters that it needs, by ascending index into the engine's
-/// list.
+/// Is one view of this frame with the casters that it needs, by their indices in the engine's list
+/// or set.
 #[derive(Debug)]
 pub(crate) struct ViewDraws {
     pub view: ShadowView,
@@ -60,11 +60,13 @@ impl Plan {
     }
 }
 
-/// Is a caster as it was drawn.
+/// Is a caster as it was drawn. Lists of them are in ascending order of revisions, so that it does
+/// not matter in which order, or at which indices, the engine has its casters.
 #[derive(Clone, Copy, Debug)]
 struct Drawn {
-    index: u32,
     revision: Option<Revision>,
+    /// Is the number of its triangles, as it was reported.
+    triangles: u32,
     /// Counts the draws for which it had not changed.
     age: u32,
 }
@@ -101,6 +103,8 @@ pub(crate) struct LayerCache {
     /// Counts the draws since the view last changed.
     age: u32,
     drawn: Vec<Drawn>,
+    /// Holds the revisions of the casters in the order in which they were drawn or last kept.
+    in_order: Vec<Option<Revision>>,
     static_cache: StaticCasterCache,
 }
 
@@ -125,29 +129,51 @@ impl LayerCache {
         self.placement == Some(*view.placement())
     }
 
-    /// Returns whether the layer holds what `draws` would put there.
-    fn holds(&self, draws: &ViewDraws, casters: &FrameCasters<'_>) -> bool {
-        self.is_of(&draws.view)
-            && draws.view.may_keep_depths_from(self.render_reach)
-            && self.drawn.len() == draws.casters.len()
-            && now(draws, casters)
-                .zip(&self.drawn)
-                .all(|(now, was)| now.revision == was.revision && now.revision.is_some())
+    /// Returns whether the layer holds the view of `draws`, and its casters are those that were
+    /// drawn, in the same order.
+    fn holds_in_order(&self, draws: &ViewDraws, casters: &FrameCasters<'_>) -> bool {
+        let same = |(&index, was): (&u32, &Option<Revision>)| {
+            let now = casters.facts(index).revision;
+            now == *was && now.is_some()
+        };
+        self.is_kept_view(draws)
+            && self.in_order.len() == draws.casters.len()
+            && draws.casters.iter().zip(&self.in_order).all(same)
+    }
+
+    /// Returns whether the layer holds the view of `draws`, whatever the casters, with depths that
+    /// are good enough.
+    fn is_kept_view(&self, draws: &ViewDraws) -> bool {
+        self.is_of(&draws.view) && draws.view.may_keep_depths_from(self.render_reach)
+    }
+
+    /// Returns whether the layer holds what `draws` would put there. `now` are its casters.
+    fn holds(&self, draws: &ViewDraws, now: &[Drawn]) -> bool {
+        self.is_kept_view(draws)
+            && self.drawn.len() == now.len()
+            && now.iter().zip(&self.drawn).all(|(now, was)| now.is_same(was))
     }
 
     /// Returns what `draws` needs. `can_copy` is false where layers cannot be copied.
     pub fn plan(&self, draws: &ViewDraws, casters: &FrameCasters<'_>, can_copy: bool) -> Plan {
-        if draws.deferred || self.holds(draws, casters) {
+        if draws.deferred || self.holds_in_order(draws, casters) {
             return Plan::Keep;
         }
-        if !can_copy || !self.is_of(&draws.view) {
+        if !self.is_of(&draws.view) {
+            return Plan::All;
+        }
+        let now = &now(draws, casters);
+        if self.holds(draws, now) {
+            return Plan::Keep;
+        }
+        if !can_copy {
             return Plan::All;
         }
         let size = draws.view.texels().size;
         let texels = u64::from(size.x) * u64::from(size.y);
-        let static_cost = draw_cost_texels(self.static_casters(draws, casters), casters);
-        if self.static_cache.is_valid_for(draws, casters) {
-            let cached_cost = draw_cost_texels(self.static_cache.casters.iter().copied(), casters);
+        let static_cost = draw_cost_texels(self.static_casters(now));
+        if self.static_cache.is_valid_for(draws, now) {
+            let cached_cost = draw_cost_texels(self.static_cache.casters.iter().copied());
             return if static_cost > cached_cost + texels {
                 Plan::RenewStaticCache
             } else {
@@ -173,10 +199,23 @@ impl LayerCache {
         }
     }
 
-    /// Returns whether the static-caster cache holds the caster at `index`.
-    pub fn is_static(&self, index: u32) -> bool {
+    /// Returns whether the static-caster cache holds a caster of this revision.
+    pub fn is_static(&self, revision: Option<Revision>) -> bool {
         let casters = &self.static_cache.casters;
-        casters.binary_search_by_key(&index, |c| c.index).is_ok()
+        revision.is_some() && casters.binary_search_by_key(&revision, |c| c.revision).is_ok()
+    }
+
+    /// Takes note of the order of the casters of a view that is kept.
+    pub fn keep(&mut self, draws: &ViewDraws, casters: &FrameCasters<'_>) {
+        if !draws.deferred && !self.holds_in_order(draws, casters) {
+            self.note_order(draws, casters);
+        }
+    }
+
+    fn note_order(&mut self, draws: &ViewDraws, casters: &FrameCasters<'_>) {
+        self.in_order.clear();
+        let revisions = draws.casters.iter().map(|&index| casters.facts(index).revision);
+        self.in_order.extend(revisions);
     }
 
     /// Updates the cache's state to what `draws` puts into the layer.
@@ -189,6 +228,7 @@ impl LayerCache {
             self.static_cache.casters.clear();
         }
         self.age = self.age.saturating_add(1);
+        let mut new = now(draws, casters);
         self.static_cache.cooldown = self.static_cache.cooldown.saturating_sub(1);
         match draws.plan {
             Plan::Keep => return,
@@ -199,42 +239,35 @@ impl LayerCache {
             Plan::RenewStaticCache => {
                 let mut kept = std::mem::take(&mut self.static_cache.casters);
                 kept.clear();
-                kept.extend(self.static_casters(draws, casters));
+                kept.extend(self.static_casters(&new));
                 self.static_cache.casters = kept;
                 self.static_cache.render_reach = self.render_reach;
                 self.static_cache.served = 0;
             }
         }
-        // The old list precedes the new one in one vector while ages are carried over.
-        let before = self.drawn.len();
-        self.drawn.extend(now(draws, casters));
-        let (old, new) = self.drawn.split_at_mut(before);
-        let mut old = old.iter().peekable();
-        for drawn in new {
-            while old.next_if(|old| old.index < drawn.index).is_some() {}
+        let mut old = self.drawn.iter().peekable();
+        for drawn in &mut new {
+            while old.next_if(|old| old.revision < drawn.revision).is_some() {}
             if let Some(old) = old.next_if(|old| old.is_same(drawn)) {
                 drawn.age = old.age.saturating_add(1);
             }
         }
-        self.drawn.drain(..before);
+        self.drawn = new;
+        self.note_order(draws, casters);
     }
 
-    /// Returns the casters of `draws` that have not changed for [`STATIC_AFTER_DRAWS`] draws.
-    fn static_casters<'a>(
-        &'a self,
-        draws: &'a ViewDraws,
-        casters: &'a FrameCasters<'_>,
-    ) -> impl Iterator<Item = Drawn> + 'a {
-        unchanged(&self.drawn, draws, casters).filter(|was| was.age >= STATIC_AFTER_DRAWS)
+    /// Returns those of the casters `now` that have not changed for [`STATIC_AFTER_DRAWS`] draws.
+    fn static_casters<'a>(&'a self, now: &'a [Drawn]) -> impl Iterator<Item = Drawn> + 'a {
+        unchanged(&self.drawn, now).filter(|was| was.age >= STATIC_AFTER_DRAWS)
     }
 }
 
 impl StaticCasterCache {
     /// Returns whether there is a cache and `draws` contains every one of its casters unchanged.
-    fn is_valid_for(&self, draws: &ViewDraws, casters: &FrameCasters<'_>) -> bool {
+    fn is_valid_for(&self, draws: &ViewDraws, now: &[Drawn]) -> bool {
         !self.casters.is_empty()
             && draws.view.may_keep_depths_from(self.render_reach)
-            && unchanged(&self.casters, draws, casters).count() == self.casters.len()
+            && unchanged(&self.casters, now).count() == self.casters.len()
     }
 
     /// Drops the cached casters. The fewer draws the cache has served, the longer no new one is
@@ -257,41 +290,38 @@ impl StaticCasterCache {
 
 impl Drawn {
     fn is_same(&self, other: &Self) -> bool {
-        self.index == other.index && self.revision == other.revision && self.revision.is_some()
+        self.revision == other.revision && self.revision.is_some()
     }
 }
 
 /// Returns the casters of `draws` in their present revisions.
-fn now<'a>(
-    draws: &'a ViewDraws,
-    casters: &'a FrameCasters<'_>,
-) -> impl Iterator<Item = Drawn> + 'a {
-    draws.casters.iter().map(|&index| Drawn {
-        index,
-        revision: casters.facts(index).revision,
-        age: 0,
-    })
+fn now(draws: &ViewDraws, casters: &FrameCasters<'_>) -> Vec<Drawn> {
+    let now = draws.casters.iter().map(|&index| {
+        let facts = casters.facts(index);
+        Drawn {
+            revision: facts.revision,
+            triangles: facts.triangles,
+            age: 0,
+        }
+    });
+    let mut now: Vec<Drawn> = now.collect();
+    // Most lists are in order already, or in few runs that are, which a stable sort makes use of.
+    now.sort_by_key(|drawn| drawn.revision);
+    now
 }
 
-/// Returns those of `before` (ascending by index) that `draws` contains with the same revision.
-fn unchanged<'a>(
-    before: &'a [Drawn],
-    draws: &'a ViewDraws,
-    casters: &'a FrameCasters<'_>,
-) -> impl Iterator<Item = Drawn> + 'a {
-    let mut now = now(draws, casters).peekable();
+/// Returns those of `before` that are in `now` with the same revision; both are in order.
+fn unchanged<'a>(before: &'a [Drawn], now: &'a [Drawn]) -> impl Iterator<Item = Drawn> + 'a {
+    let mut now = now.iter().peekable();
     before.iter().copied().filter(move |was| {
-        while now.next_if(|now| now.index < was.index).is_some() {}
-        now.peek().is_some_and(|now| now.is_same(was))
+        while now.next_if(|now| now.revision < was.revision).is_some() {}
+        now.next_if(|now| now.is_same(was)).is_some()
     })
 }
 
 /// Returns what drawing the casters costs, in copied texels.
-fn draw_cost_texels(drawn: impl Iterator<Item = Drawn>, casters: &FrameCasters<'_>) -> u64 {
+fn draw_cost_texels(drawn: impl Iterator<Item = Drawn>) -> u64 {
     drawn
-        .map(|drawn| {
-            let triangles = casters.facts(drawn.index).triangles;
-            TEXELS_PER_DRAW + TEXELS_PER_TRIANGLE * u64::from(triangles)
-        })
+        .map(|drawn| TEXELS_PER_DRAW + TEXELS_PER_TRIANGLE * u64::from(drawn.triangles))
         .sum()
 }

@@ -3,7 +3,9 @@
 //!
 //! ```text
 //! caster.rs              ShadowCaster and Revision: what the engine implements
-//! frame_casters.rs       the casters of a frame, each queried once
+//! caster_set.rs          CasterSet: casters that stay from frame to frame
+//! caster_answers.rs      what the methods of casters returned
+//! frame_casters.rs       the casters of a frame
 //! pipeline_descriptor.rs how a kind of caster is laid out and shaded
 //! pipeline.rs            CasterPipeline: the pipelines made of it
 //! pipeline_build.rs      the wgpu side of them; cube_pipeline.rs: those for six faces in one pass
@@ -19,7 +21,9 @@
 //! ```
 
 mod caster;
+mod caster_answers;
 mod caster_limits;
+mod caster_set;
 mod closed;
 mod cube_pass;
 mod cube_pipeline;
@@ -40,10 +44,12 @@ mod shared_layer;
 mod view_uniform;
 
 pub use caster::{Revision, ShadowCaster};
+pub(crate) use caster_answers::{CasterAnswers, Content};
+pub use caster_set::{CasterId, CasterSet, Casters, RetainedCasters};
 pub(crate) use caster_limits::caster_group;
 pub use closed::is_closed_solid;
 pub use frame_casters::BrokenBounds;
-pub(crate) use frame_casters::{CasterAnswers, FrameCasters, sound_bounds};
+pub(crate) use frame_casters::{FrameCasters, sound_bounds};
 pub(crate) use layer_cache::{Plan, ViewDraws};
 pub use mesh::MeshCaster;
 pub use mesh_descriptor::{MeshCasterDescriptor, MeshIndices};

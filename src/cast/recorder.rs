@@ -235,6 +235,8 @@ impl Recorder {
         let mut pipelines = prepared.pipelines.as_slice();
         for draws in views {
             if draws.plan == Plan::Keep {
+                let layer = &mut self.layers[draws.view.index() as usize];
+                layer.cache.keep(draws, casters);
                 continue;
             }
             let (own_pipelines, others) = pipelines.split_at(draws.casters.len());
@@ -260,7 +262,9 @@ impl Recorder {
             };
             match static_cache {
                 Some(static_cache) if draws.plan != Plan::All => {
-                    let is_static = |caster: &DrawnCaster<'_>| cache.is_static(caster.index);
+                    let is_static = |caster: &DrawnCaster<'_>| {
+                        cache.is_static(casters.facts(caster.index).revision)
+                    };
                     let static_casters = all.clone().filter(is_static);
                     if draws.plan == Plan::RenewStaticCache {
                         let target = static_cache.layer_view(0);

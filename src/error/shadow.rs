@@ -119,6 +119,16 @@ pub enum ShadowError {
         /// Is the index in the list.
         index: usize,
     },
+    /// A caster was removed from the set, or belongs to another set.
+    #[error(
+        "{field} must be of a caster that this set has been given and not taken back, got index {index}"
+    )]
+    UnknownCaster {
+        /// Is the path of the field.
+        field: &'static str,
+        /// Is the index of the caster.
+        index: u32,
+    },
     /// A slot was removed from the pool, or belongs to another pool.
     #[error(
         "{field} must be a slot that this pool has given out and not taken back, got slot {index}"

@@ -150,6 +150,34 @@ impl LightBox {
         }
     }
 
+    /// Returns the box grown by more than the light coordinates of points in it may be off.
+    fn with_rounding(&self) -> Self {
+        let reach = self.min.abs().max(self.max.abs()).element_sum();
+        self.grown(32.0 * f64::EPSILON * reach)
+    }
+
+    /// Returns whether the box holds all of `other`, whatever the rounding of points in it.
+    pub fn surely_holds(&self, other: &Self) -> bool {
+        self.surely_holds_xy(other) && self.surely_holds_depths(other)
+    }
+
+    /// Returns whether the box holds all of `other` as seen from the light.
+    pub fn holds_xy(&self, other: &Self) -> bool {
+        let (low, high) = (self.min.cmple(other.min), self.max.cmpge(other.max));
+        low.x && low.y && high.x && high.y
+    }
+
+    /// Returns whether it does so as seen from the light, whatever the rounding of points in it.
+    pub fn surely_holds_xy(&self, other: &Self) -> bool {
+        self.holds_xy(&other.with_rounding())
+    }
+
+    /// Returns whether all depths of `other` are among its own, whatever the rounding.
+    pub fn surely_holds_depths(&self, other: &Self) -> bool {
+        let other = other.with_rounding();
+        self.min.z <= other.min.z && self.max.z >= other.max.z
+    }
+
     /// Returns the longer of its sides across the light; 0 for an empty box.
     pub fn widest_side(&self) -> f64 {
         (self.max - self.min).truncate().max_element().max(0.0)

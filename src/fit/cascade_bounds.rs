@@ -1,15 +1,21 @@
 //! Fits the light-space bounds of one cascade of a directional light.
 
+use std::cell::Cell;
+
 use glam::{DVec3, UVec2};
 
+use crate::Aabb;
 use crate::fit::axes::LightBox;
 use crate::fit::caster_parts::CasterPart;
-use crate::fit::directional_input::{CasterBounds, FitInput, FitLimits, Region};
+use crate::fit::directional_input::{FitInput, FitLimits, Region};
 use crate::fit::extruded_rect::push_extruded_rect;
-use crate::fit::map_rect::{HeldBounds, HeldDepth, HeldRect, LightSpaceBounds, MapRectRequest};
+use crate::fit::map_rect::{
+    BoundsDemand, HeldBounds, HeldDepth, HeldRect, LightSpaceBounds, MapRectRequest,
+};
 use crate::fit::region::HalfSpaces;
 use crate::fit::spacing::Spacing;
 use crate::fit::stability::Stability;
+use crate::fit::sun_casters::SunCasters;
 use crate::fit::visible::{self, Seen};
 
 /// Is the largest distance in texels, from the highest receiver, to which casters whose bounds
@@ -28,8 +34,8 @@ const MAX_GAP_SHARE: f64 = 1.0 / 64.0;
 pub(crate) struct Cascade<'a> {
     pub input: &'a FitInput<'a>,
     pub limits: &'a FitLimits,
-    /// Has one entry per caster.
-    pub casters: &'a [CasterBounds],
+    /// Holds the casters that count as a whole.
+    pub casters: SunCasters<'a>,
     /// Holds the parts of divided casters, the highest first. Only these parts of a divided caster
     /// count.
     pub parts: &'a [CasterPart],
@@ -44,15 +50,16 @@ pub(crate) struct Cascade<'a> {
 impl Cascade<'_> {
     /// Returns the light-space bounds for receivers in `required`: the area, seen from the light,
     /// that both receivers and casters cover. Where rounding makes it doubtful whether a caster
-    /// reaches the receivers, it counts as reaching them. Returns `None` where no caster does.
+    /// reaches the receivers, it counts as reaching them. The second value is what was asked of the
+    /// bounds. Returns `None` where no caster does.
     pub fn fit(
         &self,
         required: &LightBox,
         spacing: Spacing,
         held: Option<&HeldBounds>,
-    ) -> Option<HeldBounds> {
+    ) -> Option<(HeldBounds, BoundsDemand)> {
         let limits = self.limits;
-        let shadows = self.shadows(required, spacing)?;
+        let shadows = self.shadows(required, required, spacing)?;
         let received = if self.follows_casters() {
             self.shadowed_part(required, &shadows, spacing)
         } else {
@@ -77,24 +84,29 @@ impl Cascade<'_> {
         };
         let rect = HeldRect::fit(&request, held.map(|held| &held.rect));
         let texel = rect.rect.texel.max_element();
-        let depth = |near: f64| {
-            HeldDepth::fit(
-                received.min.z,
-                near,
-                texel.max(spacing.least_depth()),
-                held.map(|held| &held.depth),
-            )
-        };
+        let least_depth = texel.max(spacing.least_depth());
+        let held_depth = held.map(|held| &held.depth);
+        let depth = |near: f64| HeldDepth::fit(received.min.z, near, least_depth, held_depth);
+        let highest = shadows.max.z.max(received.min.z);
         let reaching = LightSpaceBounds {
             rect: rect.rect,
-            depth: depth(shadows.max.z.max(received.min.z)).depth,
+            depth: depth(highest).depth,
         };
         let nearest_allowed = received.max.z + MAX_TEXELS_TO_NEAR * texel;
         let nearest = self.nearest_caster(&reaching, spacing, received.min.z, nearest_allowed);
-        Some(HeldBounds {
+        let bounds = HeldBounds {
             rect,
             depth: depth(nearest),
-        })
+        };
+        let demand = BoundsDemand {
+            request,
+            far: received.min.z,
+            highest,
+            nearest,
+            least_depth,
+            reaching: reaching.depth,
+        };
+        Some((bounds, demand))
     }
 
     /// Returns whether the bounds hold no more of the receivers than what casters reach.
@@ -107,15 +119,25 @@ impl Cascade<'_> {
     }
 
     /// Returns the light-space box of all that visibly shadows receivers in `required`, or `None`
-    /// where nothing does.
-    pub fn shadows(&self, required: &LightBox, spacing: Spacing) -> Option<LightBox> {
+    /// where nothing does. Across the light it is the part inside `window`, which holds `required`.
+    /// Its farthest depth means nothing.
+    pub fn shadows(
+        &self,
+        required: &LightBox,
+        window: &LightBox,
+        spacing: Spacing,
+    ) -> Option<LightBox> {
         let gap_share = if self.follows_casters() {
             let side = f64::from(self.size_texels.min_element());
             (self.limits.gap_texels / side).min(MAX_GAP_SHARE)
         } else {
             0.0
         };
-        self.shadow_box(required, spacing, gap_share)
+        let shadows = self.shadow_box(required, window, spacing, gap_share)?;
+        Some(LightBox {
+            min: shadows.min.clamp(window.min, window.max).with_z(shadows.min.z),
+            max: shadows.max.clamp(window.min, window.max).with_z(shadows.max.z),
+        })
     }
 
     /// Returns the part of `required`, which holds all receivers, onto which the casters in
@@ -133,8 +155,8 @@ impl Cascade<'_> {
         part
     }
 
-    /// Returns the light-space box of all that can shadow receivers in `required`, or `None` where
-    /// nothing can.
+    /// Returns a light-space box that has the same part inside `window` as that of all that can
+    /// shadow receivers in `required`, and the same greatest depth; `None` where nothing can.
     ///
     /// A part that rises above its receivers by less than the gap that the bias may leave has no
     /// visible shadow, so the map does not cover a ground for the sake of a carpet on it.
@@ -142,6 +164,7 @@ impl Cascade<'_> {
     fn shadow_box(
         &self,
         required: &LightBox,
+        window: &LightBox,
         spacing: Spacing,
         gap_share: f64,
     ) -> Option<LightBox> {
@@ -150,11 +173,24 @@ impl Cascade<'_> {
             light.max.z > required.min.z && light.overlaps_xy(required)
         };
         let mut shadows = LightBox::EMPTY;
-        for caster in self.casters.iter().filter(|caster| caster.can_shadow) {
-            if reaches(&caster.light) {
-                shadows.union(&caster.light);
-            }
-        }
+        self.casters.walk(
+            spacing,
+            &mut shadows,
+            |shadows, around| {
+                let adds = || {
+                    let part = around.intersection_xy(window);
+                    part.is_none_or(|part| !shadows.holds_xy(&part))
+                };
+                around.max.z > required.min.z
+                    && around.overlaps_xy(required)
+                    && (around.max.z > shadows.max.z || adds())
+            },
+            |shadows, _, _, light| {
+                if reaches(light) {
+                    shadows.union(light);
+                }
+            },
+        );
         for part in self.parts.iter().filter(|part| reaches(&part.light)) {
             let mut grown = shadows;
             grown.union(&part.light);
@@ -187,30 +223,36 @@ impl Cascade<'_> {
         let mut over_rect = HalfSpaces::default();
         let sides = (reaching.rect.min, reaching.rect.max());
         push_extruded_rect(&mut over_rect, space, sides);
-        let whole = self.casters.iter().zip(self.input.casters);
-        let whole = whole.filter(|(caster, _)| caster.can_shadow);
-        let whole = whole.map(|(caster, bounds)| (&caster.light, bounds, &caster.light));
-        let parts = self.parts.iter().map(|part| {
-            let of = &self.casters[part.caster as usize];
-            (&part.light, &part.bounds, &of.light)
-        });
-        let mut nearest = farthest;
-        for (light, bounds, whole_light) in whole.chain(parts) {
+        let nearest = Cell::new(farthest);
+        let reaches = |light: &LightBox| {
             let light = spacing.widest(light);
-            if light.max.z > nearest && reaching.holds_part_of(&light) {
-                let surrounds_receivers =
-                    whole_light.min.z <= farthest && whole_light.max.z >= nearest_allowed;
-                let limit = if surrounds_receivers {
-                    nearest_allowed
-                } else {
-                    f64::INFINITY
-                };
-                over_rect.visit_vertices(bounds, |vertex| {
-                    nearest = nearest.max(space.depth(vertex).min(limit));
-                });
-            }
+            light.max.z > nearest.get() && reaching.holds_part_of(&light)
+        };
+        let include = |bounds: &Aabb, whole: &LightBox| {
+            let surrounds_receivers = whole.min.z <= farthest && whole.max.z >= nearest_allowed;
+            let limit = if surrounds_receivers {
+                nearest_allowed
+            } else {
+                f64::INFINITY
+            };
+            over_rect.visit_vertices(bounds, |vertex| {
+                nearest.set(nearest.get().max(space.depth(vertex).min(limit)));
+            });
+        };
+        self.casters.walk(
+            spacing,
+            &mut (),
+            |(), around| around.max.z > nearest.get() && reaching.holds_part_of(around),
+            |(), _, bounds, light| {
+                if reaches(light) {
+                    include(bounds, light);
+                }
+            },
+        );
+        for part in self.parts.iter().filter(|part| reaches(&part.light)) {
+            include(&part.bounds, &space.bounds(self.casters.boxes.at(part.caster)));
         }
-        nearest
+        nearest.get()
     }
 
     /// Returns z of the receivers farthest from the light and nearest to it, within the sides of
@@ -220,24 +262,37 @@ impl Cascade<'_> {
         let mut over = HalfSpaces::default();
         let sides = (covered.min.truncate(), covered.max.truncate());
         push_extruded_rect(&mut over, space, sides);
-        let mut depths = (f64::INFINITY, f64::NEG_INFINITY);
-        let mut include = |vertex: DVec3| {
-            let z = space.depth(vertex);
-            depths = (depths.0.min(z), depths.1.max(z));
+        let depths = Cell::new((f64::INFINITY, f64::NEG_INFINITY));
+        let include = |vertex: DVec3| {
+            let (z, (farthest, nearest)) = (space.depth(vertex), depths.get());
+            depths.set((farthest.min(z), nearest.max(z)));
+        };
+        let adds = |bounds: &Aabb| {
+            let (light, (farthest, nearest)) = (space.bounds(bounds), depths.get());
+            let held = LightBox {
+                min: light.min.with_z(farthest),
+                max: light.max.with_z(nearest),
+            };
+            !held.surely_holds_depths(&light)
         };
         match self.input.region {
             Region::Bounds(_) => {}
-            Region::Everything => {
-                for (bounds, _) in self.input.receivers.iter() {
-                    over.visit_vertices(bounds, &mut include);
-                }
-            }
+            Region::Everything => self.input.receivers.walk(
+                &mut (),
+                |(), around| !over.surely_misses(around) && adds(around),
+                |(), _, bounds| {
+                    if adds(bounds) {
+                        over.visit_vertices(bounds, include);
+                    }
+                },
+            ),
             Region::Cameras(cameras) => {
                 for camera in cameras.iter().enumerate() {
-                    visible::visit_between(camera, self.seen, self.between?, &over, &mut include);
+                    visible::visit_between(camera, self.seen, self.between?, &over, adds, include);
                 }
             }
         }
+        let depths = depths.get();
         (depths.0 <= depths.1).then_some(depths)
     }
 }

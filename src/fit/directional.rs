@@ -1,22 +1,22 @@
 //! Fits the cascades of a directional light to the visible receivers and to every caster that can
 //! reach them.
 
-use glam::DVec3;
-
-use crate::fit::axes::{LightAxes, LightBox};
+use crate::fit::axes::{LightAxes, LightBox, LightSpace};
+use crate::fit::boxes::Boxes;
 use crate::fit::cascade_bounds::Cascade;
 use crate::fit::cascade_layout::CascadeLayout;
-use crate::fit::caster_parts::{Casters, PartScratch};
-use crate::fit::directional_input::{CasterBounds, FitInput, FitLimits, Region};
+use crate::fit::caster_parts::PartScratch;
+use crate::fit::directional_input::{FitInput, FitLimits, Region};
 use crate::fit::extruded_rect::ExtrudedRect;
 use crate::fit::footprint::{FootprintScratch, SliceReport};
 use crate::fit::layout::HeldLayout;
 use crate::fit::layout_choice::{Layout, Prediction};
 use crate::fit::layout_samples::{SampleScratch, Sampled};
-use crate::fit::map_rect::{HeldBounds, HeldDepth, LightSpaceBounds};
+use crate::fit::map_rect::{BoundsDemand, HeldBounds, HeldDepth, LightSpaceBounds};
 use crate::fit::required::{camera_slice, checked_spacing, held_depths, required_box};
 use crate::fit::spacing::Spacing;
 use crate::fit::split::MAX_CASCADES;
+use crate::fit::sun_casters::{SunCaster, SunCasters};
 use crate::fit::visible::{SeenBounds, SeenLists};
 use crate::{Aabb, ShadowError};
 
@@ -32,6 +32,10 @@ pub(crate) struct DirectionalFit {
     /// Has one entry per cascade, `None` for a cascade in which nothing can cast a shadow.
     pub light_bounds: [Option<LightSpaceBounds>; MAX_CASCADES],
     held: [Option<HeldBounds>; MAX_CASCADES],
+    /// Holds what was asked of each of `light_bounds`.
+    demands: [Option<BoundsDemand>; MAX_CASCADES],
+    /// Bounds what was visible.
+    visible: Option<SeenBounds>,
     /// Holds the axes of the light in the last frame.
     axes: Option<LightAxes>,
     /// Holds the depths along the view between which receivers are visible.
@@ -43,14 +47,29 @@ pub(crate) struct DirectionalFit {
 }
 
 /// Holds lists that are reused from frame to frame.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct FitScratch {
-    /// Has one entry per caster, in order.
-    casters: Vec<CasterBounds>,
+    /// Bounds what is visible in this frame.
+    visible: SeenBounds,
+    /// Holds the casters that can shadow something, where no tree finds them.
+    casters: Vec<SunCaster>,
     lists: SeenLists,
     parts: PartScratch,
     footprint: FootprintScratch,
     samples: SampleScratch,
+}
+
+impl Default for FitScratch {
+    fn default() -> Self {
+        Self {
+            visible: SeenBounds::NOTHING,
+            casters: Vec::new(),
+            lists: SeenLists::default(),
+            parts: PartScratch::default(),
+            footprint: FootprintScratch::default(),
+            samples: SampleScratch::default(),
+        }
+    }
 }
 
 impl DirectionalFit {
@@ -63,7 +82,7 @@ impl DirectionalFit {
         })
     }
 
-    /// Returns the fit for this frame and fills `scratch.casters`.
+    /// Returns the fit for this frame and fills `scratch`.
     ///
     /// Returns an error where casters and receivers are so far from the world's origin that f64
     /// does not distinguish their positions.
@@ -74,24 +93,21 @@ impl DirectionalFit {
         scratch: &mut FitScratch,
     ) -> Result<Self, ShadowError> {
         let visible = find_visible(input, &mut scratch.lists);
-        scratch.casters.clear();
-        scratch
-            .casters
-            .extend(input.casters.iter().map(|bounds| CasterBounds {
-                light: input.space.bounds(bounds),
-                can_shadow: !bounds.is_empty()
-                    && can_shadow(bounds, &visible, input.space.axes.toward_light()),
-            }));
-        divide_casters(input, &visible, scratch);
-        let any_casts = scratch.casters.iter().any(|caster| caster.can_shadow)
-            || !scratch.parts.parts.is_empty();
+        scratch.visible = visible;
+        SunCasters::list(&input.space, input.casters, &visible, &mut scratch.casters);
+        divide_casters(input, scratch);
+        let casters = scratch.whole_casters(&input.space, input.casters);
+        let any_casts = !scratch.parts.parts.is_empty()
+            || casters.any(Spacing::around(input.space.origin, &LightBox::EMPTY));
         let history = if self.holds_for(&input.space.axes) {
             self.clone()
         } else {
             Self::default()
         };
         let mut next = history.clone();
+        next.demands = Default::default();
         next.axes = Some(input.space.axes);
+        next.visible = Some(visible);
         let depths = held_depths(&visible, history.held_depths.as_ref());
         next.held_depths = depths.or(history.held_depths);
         let limits = &next.find_layout(input, limits, &visible, scratch);
@@ -110,7 +126,7 @@ impl DirectionalFit {
                     let cascade = Cascade {
                         input,
                         limits,
-                        casters: &scratch.casters,
+                        casters: scratch.whole_casters(&input.space, input.casters),
                         parts: &scratch.parts.parts,
                         size_texels: limits.rects[cascade].size,
                         seen,
@@ -120,6 +136,8 @@ impl DirectionalFit {
                 }
                 _ => None,
             };
+            let (held_bounds, demand) = held_bounds.unzip();
+            next.demands[cascade] = demand;
             next.held[cascade] = held_bounds.or(next.held[cascade]);
             let light_bounds = held_bounds.map(|held| held.bounds());
             next.light_bounds[cascade] = light_bounds;
@@ -129,6 +147,32 @@ impl DirectionalFit {
             });
         }
         Ok(next)
+    }
+
+    /// Returns the fit for a frame in which nothing differs from the last. Only the time counts for
+    /// which extents have been larger than needed. Returns `None` where the whole fit is needed,
+    /// because that time is over or a layout is to be chosen.
+    pub fn again(&self) -> Option<Self> {
+        let mut next = self.clone();
+        let depths = held_depths(self.visible.as_ref()?, self.held_depths.as_ref());
+        next.held_depths = depths.or(self.held_depths);
+        let same_depths = match (&next.held_depths, &self.held_depths) {
+            (Some(next), Some(held)) => next.depth == held.depth,
+            (next, held) => next.is_none() == held.is_none(),
+        };
+        if !same_depths {
+            return None;
+        }
+        if let Some(layout) = &self.layout {
+            next.layout = Some(layout.without_prediction()?);
+        }
+        for cascade in 0..MAX_CASCADES {
+            if self.light_bounds[cascade].is_some() {
+                let demand = self.demands[cascade].as_ref()?;
+                next.held[cascade] = Some(self.held[cascade]?.again(demand)?);
+            }
+        }
+        Some(next)
     }
 
     /// Returns the settings for this frame, with the layout that is found where none is given.
@@ -146,7 +190,13 @@ impl DirectionalFit {
         let sampled = Sampled {
             input,
             seen: &scratch.lists.seen,
-            casters: &scratch.casters,
+            casters: SunCasters {
+                space: &input.space,
+                boxes: input.casters,
+                visible,
+                divided: &scratch.parts.divided,
+                listed: &scratch.casters,
+            },
             parts: &scratch.parts.parts,
         };
         let samples = &mut scratch.samples;
@@ -183,15 +233,21 @@ impl DirectionalFit {
         let reaches = |light: &LightBox, bounds: &Aabb| {
             light_bounds.holds_part_of(&spacing.widest(light)) && volume.meets(bounds)
         };
-        let all = (0u32..).zip(scratch.casters.iter().zip(input.casters));
-        drawn.extend(all.filter_map(|(index, (caster, bounds))| {
-            (caster.can_shadow && reaches(&caster.light, bounds)).then_some(index)
-        }));
+        scratch.whole_casters(&input.space, input.casters).walk(
+            spacing,
+            drawn,
+            |_, around| light_bounds.holds_part_of(around),
+            |drawn, index, bounds, light| {
+                if reaches(light, bounds) {
+                    drawn.push(index);
+                }
+            },
+        );
         let parts = scratch.parts.parts.iter();
         drawn.extend(
             parts.filter_map(|part| reaches(&part.light, &part.bounds).then_some(part.caster)),
         );
-        if !scratch.parts.parts.is_empty() {
+        if !scratch.parts.parts.is_empty() || input.casters.tree.is_some() {
             drawn.sort_unstable();
             drawn.dedup();
         }
@@ -205,7 +261,7 @@ fn find_visible(input: &FitInput<'_>, lists: &mut SeenLists) -> SeenBounds {
         Region::Bounds(bounds) => SeenBounds::of_boxes([bounds]),
         Region::Everything => {
             lists.set_whole(input.receivers);
-            SeenBounds::of_boxes(input.receivers.bounds)
+            SeenBounds::of_boxes(input.receivers.iter().map(|(bounds, _)| bounds))
         }
         Region::Cameras(cameras) => lists.find(cameras, input.receivers),
     }
@@ -213,42 +269,34 @@ fn find_visible(input: &FitInput<'_>, lists: &mut SeenLists) -> SeenBounds {
 
 /// Replaces casters that are much larger than all others by the parts of them that count. In a
 /// given box everything receives, so that all of a caster counts.
-fn divide_casters(input: &FitInput<'_>, visible: &SeenBounds, scratch: &mut FitScratch) {
+fn divide_casters(input: &FitInput<'_>, scratch: &mut FitScratch) {
+    scratch.parts.clear();
     if matches!(input.region, Region::Bounds(_)) {
-        return scratch.parts.clear();
+        return;
     }
-    let casters = Casters {
+    let visible = &scratch.visible;
+    let visible_box = Aabb::around(visible.render_min, visible.render_max);
+    let visible_box = input.space.bounds(&visible_box);
+    let candidates = SunCasters {
         space: &input.space,
-        bounds: input.casters,
-        shapes: input.shapes,
+        boxes: input.casters,
+        visible,
+        divided: &[],
+        listed: &scratch.casters,
     };
-    let visible = Aabb::around(visible.render_min, visible.render_max);
-    let visible = input.space.bounds(&visible);
-    let candidates = (0u32..).zip(&scratch.casters);
-    let candidates = candidates.filter(|(_, caster)| caster.can_shadow);
-    let candidates = candidates.map(|(index, caster)| (index, caster.light));
     let parts = &mut scratch.parts;
-    parts.find(&casters, candidates, &visible, &scratch.lists.parts);
-    for &caster in &parts.divided {
-        scratch.casters[caster as usize].can_shadow = false;
-    }
+    parts.find(input.shapes, &candidates, &visible_box, &scratch.lists.parts);
 }
 
-/// Returns whether a shadow of `caster` can fall on anything visible. A point is shadowed by a
-/// point of the caster further along the way to the light, so on each world axis the caster must
-/// reach beyond the receivers' near end in the light's direction. A flat floor under everything
-/// else fails this (it reaches just as far as the lowest receiver: itself), and neither widens the
-/// light-space bounds nor is drawn.
-fn can_shadow(caster: &Aabb, receivers: &SeenBounds, toward_light: DVec3) -> bool {
-    let (low, high) = (caster.min.as_dvec3(), caster.max.as_dvec3());
-    (0..3).all(|axis| {
-        let toward = toward_light[axis];
-        if toward > 0.0 {
-            high[axis] > receivers.render_min[axis]
-        } else if toward < 0.0 {
-            low[axis] < receivers.render_max[axis]
-        } else {
-            high[axis] >= receivers.render_min[axis] && low[axis] <= receivers.render_max[axis]
+impl FitScratch {
+    /// Returns the casters that can shadow something and count as a whole.
+    fn whole_casters<'a>(&'a self, space: &'a LightSpace, boxes: Boxes<'a>) -> SunCasters<'a> {
+        SunCasters {
+            space,
+            boxes,
+            visible: &self.visible,
+            divided: &self.parts.divided,
+            listed: &self.casters,
         }
-    })
+    }
 }

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use crate::Aabb;
 use crate::fit::axes::{LightBox, LightSpace};
+use crate::fit::boxes::Boxes;
 use crate::fit::camera::CameraFrustum;
 use crate::fit::cascade_layout::CascadeLayout;
 use crate::fit::caster_shape::CasterShape;
@@ -29,7 +30,7 @@ pub(crate) struct FitInput<'a> {
     pub space: LightSpace,
     pub region: Region<'a>,
     /// Holds the bounds of what casts; empty ones cast nothing.
-    pub casters: &'a [Aabb],
+    pub casters: Boxes<'a>,
     /// Has one entry per caster.
     pub shapes: &'a [CasterShape],
     pub receivers: Receivers<'a>,
@@ -52,16 +53,6 @@ pub(crate) struct FitLimits {
     /// Holds the rectangle of each cascade in its layer.
     pub rects: [TexelRect; MAX_CASCADES],
     pub stability: Stability,
-}
-
-/// Holds what the fit needs to know of a caster.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct CasterBounds {
-    pub light: LightBox,
-    /// Is false where no visible receiver is behind the caster: a ground plane below everything
-    /// shadows nothing. It is false as well for a caster that is divided into parts, which count in
-    /// its place.
-    pub can_shadow: bool,
 }
 
 impl FitInput<'_> {

@@ -27,6 +27,12 @@ pub(crate) struct HeldLayout {
 }
 
 impl HeldLayout {
+    /// Returns the layout of the next frame where no prediction is due.
+    pub fn without_prediction(&self) -> Option<Self> {
+        let frames = self.frames + 1;
+        (frames < FRAMES_BETWEEN_PREDICTIONS).then_some(Self { frames, ..*self })
+    }
+
     /// Returns the layout of the next frame. `predict` is called where a prediction is due; it
     /// returns `None` where no shadow is seen, so that any layout serves as well.
     pub fn next<'a>(
@@ -34,14 +40,8 @@ impl HeldLayout {
         map_size: u32,
         predict: impl FnOnce() -> Option<Prediction<'a>>,
     ) -> Self {
-        match held {
-            Some(held) if held.frames + 1 < FRAMES_BETWEEN_PREDICTIONS => {
-                return Self {
-                    frames: held.frames + 1,
-                    ..*held
-                };
-            }
-            _ => {}
+        if let Some(next) = held.and_then(Self::without_prediction) {
+            return next;
         }
         let Some(prediction) = predict() else {
             let none = Self {

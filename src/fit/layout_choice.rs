@@ -152,13 +152,20 @@ impl<'a> Prediction<'a> {
             split: SplitRule::Practical { lambda: 1.0 },
             ..*limits
         };
-        let mut zones = [Extent::NOTHING; ZONES];
-        for (index, zone) in zones.iter_mut().enumerate() {
-            let slice = camera_slice(input, &zone_limits, visible, held_depths, index)?;
-            *zone = extent(sampled, &zone_limits, slice.between, || {
-                required_box(input, &zone_limits, Some(&slice), sampled.seen, index)
-            });
+        let mut between = [(0.0, 0.0); ZONES];
+        let mut required = [None; ZONES];
+        let mut window = LightBox::EMPTY;
+        for zone in 0..ZONES {
+            let slice = camera_slice(input, &zone_limits, visible, held_depths, zone)?;
+            between[zone] = slice.between;
+            required[zone] =
+                required_box(input, &zone_limits, Some(&slice), sampled.seen, zone);
+            required[zone].iter().for_each(|required| window.union(required));
         }
+        let zones: [Extent; ZONES] = std::array::from_fn(|zone| match &required[zone] {
+            None => Extent::NOTHING,
+            Some(required) => extent(sampled, &zone_limits, between[zone], required, &window),
+        });
         let mut covered = [[None; ZONES]; ZONES];
         for (first, covered) in covered.iter_mut().enumerate() {
             let mut all = Extent::NOTHING;
@@ -324,17 +331,16 @@ fn cascade_of(covered: &[Option<Covered>; MAX_CASCADES], sample: &Sample) -> Opt
         .position(|covered| covered.is_some_and(|covered| covered.holds(sample.light)))
 }
 
-/// Returns what a cascade over a zone would cover.
+/// Returns what a cascade over a zone with the receivers `required` would cover, as far as it is in
+/// `window`, which holds the receivers of all zones.
 fn extent(
     sampled: &Sampled<'_>,
     limits: &FitLimits,
     between: (f64, f64),
-    required: impl FnOnce() -> Option<LightBox>,
+    required: &LightBox,
+    window: &LightBox,
 ) -> Extent {
     let input: &FitInput<'_> = sampled.input;
-    let Some(required) = required() else {
-        return Extent::NOTHING;
-    };
     let cascade = Cascade {
         input,
         limits,
@@ -344,9 +350,12 @@ fn extent(
         seen: sampled.seen,
         between: Some(between),
     };
-    let spacing = Spacing::around(input.space.origin, &required);
-    match cascade.shadows(&required, spacing) {
-        Some(shadows) => Extent { required, shadows },
+    let spacing = Spacing::around(input.space.origin, required);
+    match cascade.shadows(required, window, spacing) {
+        Some(shadows) => Extent {
+            required: *required,
+            shadows,
+        },
         None => Extent::NOTHING,
     }
 }

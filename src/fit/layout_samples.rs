@@ -5,10 +5,13 @@ use std::ops::RangeInclusive;
 use glam::{DVec2, DVec3};
 
 use crate::Aabb;
+use crate::fit::axes::LightBox;
 use crate::fit::camera::CameraFrustum;
 use crate::fit::caster_parts::CasterPart;
-use crate::fit::directional_input::{CasterBounds, FitInput};
+use crate::fit::directional_input::FitInput;
 use crate::fit::point_grid::PointGrid;
+use crate::fit::spacing::Spacing;
+use crate::fit::sun_casters::SunCasters;
 use crate::fit::visible::Seen;
 
 /// Is the number of rays in a round, which all cameras of a frame share.
@@ -64,6 +67,7 @@ pub(crate) struct SampleScratch {
     rays: Vec<Ray>,
     hits: Vec<Hit>,
     grid: PointGrid,
+    outlines: Vec<Outline>,
 }
 
 /// Is a ray through a camera's image, with what it has met so far.
@@ -77,7 +81,8 @@ struct Ray {
     per_depth: DVec3,
     /// Is the depth of the nearest flat bounds, or the far end of the camera's view.
     end: f64,
-    /// Is the outward normal of these bounds.
+    /// Is the axis across which these bounds are met; the next field is their outward normal.
+    end_axis: usize,
     normal: Option<DVec3>,
     /// Is the depth at which the first of the other bounds begin, and at which the last end.
     first: f64,
@@ -94,11 +99,21 @@ struct Hit {
     counted_pixel: f64,
 }
 
+/// Is the outline of a caster between a point and the light.
+#[derive(Clone, Copy, Debug)]
+struct Outline {
+    /// Is the index of the point.
+    hit: usize,
+    /// Is the length of the outline, per area across the light.
+    length: f64,
+}
+
 /// Holds what is sampled.
 pub(crate) struct Sampled<'a> {
     pub input: &'a FitInput<'a>,
     pub seen: &'a [Seen],
-    pub casters: &'a [CasterBounds],
+    /// Holds the casters that count as a whole.
+    pub casters: SunCasters<'a>,
     pub parts: &'a [CasterPart],
 }
 
@@ -141,6 +156,7 @@ impl Sampled<'_> {
             rays,
             hits,
             grid,
+            outlines,
         } = scratch;
         rays.clear();
         rays.extend(indices.map(|index| Ray::new(camera, index)));
@@ -163,7 +179,7 @@ impl Sampled<'_> {
         hits.clear();
         hits.extend(rays.iter().filter_map(|ray| self.hit(camera, ray)));
         grid.fill(hits.iter().map(|hit| hit.sample.light));
-        self.add_edges(hits, grid);
+        self.add_edges(hits, grid, outlines);
         samples.extend(hits.iter().filter_map(|hit| {
             let edges = hit.sample.edges.is_finite();
             edges.then_some(Sample {
@@ -204,8 +220,12 @@ impl Sampled<'_> {
 
     /// Adds to each point the length of the outlines of casters between it and the light, per area
     /// across the light. `grid` holds the points across the light.
-    fn add_edges(&self, hits: &mut [Hit], grid: &PointGrid) {
-        let inverse = self.input.space.axes.toward_light().recip();
+    fn add_edges(&self, hits: &mut [Hit], grid: &PointGrid, outlines: &mut Vec<Outline>) {
+        if hits.is_empty() {
+            return;
+        }
+        let space = &self.input.space;
+        let inverse = space.axes.toward_light().recip();
         let shadows = |bounds: &Aabb, point: DVec3| {
             let least = 1e-6 * point.abs().max_element();
             let low = (bounds.min.as_dvec3() - point) * inverse;
@@ -213,18 +233,35 @@ impl Sampled<'_> {
             let enter = low.min(high).max_element().max(0.0);
             low.max(high).min_element() > enter + least
         };
-        let whole = self.casters.iter().zip(self.input.casters);
-        let whole = whole.filter(|(caster, _)| caster.can_shadow);
-        let whole = whole.map(|(caster, bounds)| (&caster.light, bounds));
-        let parts = self.parts.iter().map(|part| (&part.light, &part.bounds));
-        for (light, bounds) in whole.chain(parts) {
-            let (min, max) = (light.min.truncate(), light.max.truncate());
-            let edges = 2.0 * (max - min).recip().element_sum();
-            for hit in grid.near(min, max) {
-                if shadows(bounds, hits[hit].render) {
-                    hits[hit].sample.edges += edges;
-                }
-            }
+        let mut window = LightBox::EMPTY;
+        for hit in hits.iter() {
+            window.include(hit.sample.light.extend(0.0));
+        }
+        let spacing = Spacing::around(space.origin, &window);
+        outlines.clear();
+        let find = |outlines: &mut Vec<Outline>, bounds: &Aabb, light: &LightBox| {
+            let around = spacing.widest(light);
+            let length = 2.0 * (light.max - light.min).truncate().recip().element_sum();
+            let near = grid.near(around.min.truncate(), around.max.truncate());
+            let shadowed = near.filter(|hit| shadows(bounds, hits[*hit].render));
+            outlines.extend(shadowed.map(|hit| Outline { hit, length }));
+        };
+        self.casters.walk(
+            spacing,
+            outlines,
+            |_, around| around.overlaps_xy(&window),
+            |outlines, _, bounds, light| find(outlines, bounds, light),
+        );
+        for part in self.parts {
+            find(outlines, &part.bounds, &part.light);
+        }
+        // Sums depend on the order of what is added, and casters come in any order.
+        outlines.sort_unstable_by(|a, b| {
+            let lengths = a.length.total_cmp(&b.length);
+            a.hit.cmp(&b.hit).then(lengths)
+        });
+        for outline in outlines {
+            hits[outline.hit].sample.edges += outline.length;
         }
     }
 }
@@ -247,6 +284,7 @@ impl Ray {
             start,
             per_depth,
             end: camera.depth_range().1,
+            end_axis: 0,
             normal: None,
             first: f64::INFINITY,
             last: f64::NEG_INFINITY,
@@ -269,12 +307,13 @@ impl Ray {
         let Some((enter, _)) = self.chord(bounds, near) else {
             return;
         };
-        let depth = enter.max_element();
-        if (near..self.end).contains(&depth) {
-            let axis = enter.max_position();
+        let (depth, axis) = (enter.max_element(), enter.max_position());
+        // Of several at the same depth, the one across the first axis counts.
+        let is_first = depth < self.end || (depth == self.end && axis < self.end_axis);
+        if depth >= near && is_first {
             let mut normal = DVec3::ZERO;
             normal[axis] = -self.per_depth[axis].signum();
-            self.end = depth;
+            (self.end, self.end_axis) = (depth, axis);
             self.normal = Some(normal);
         }
     }

@@ -37,6 +37,18 @@ pub(crate) struct LocalFit {
     /// Holds the same distance before the range limits it; `None` where no receiver is seen within
     /// the range.
     held_reach: Option<HeldSize>,
+    demands: LocalDemands,
+}
+
+/// Is what the last fit asked for, so that the same can be asked again.
+#[derive(Clone, Debug, Default)]
+struct LocalDemands {
+    /// Is the distance that `held_reach` holds; `None` where it was not asked for any.
+    farthest: Option<f64>,
+    /// Is the light's range.
+    range: f64,
+    /// Holds the request for each of the rectangles, with the distance of a near plane.
+    views: [Option<(MapRectRequest, f64)>; MAX_LOCAL_VIEWS],
 }
 
 /// Is a rectangle of tangents.
@@ -55,11 +67,16 @@ impl LocalFit {
         drawn: &mut [Vec<u32>],
     ) -> Self {
         let light = input.position_world - input.origin;
-        let (reach, held_reach) = self.reach(input, light);
+        let (reach, held_reach, farthest) = self.reach(input, light);
         let mut next = Self {
             rects: [None; MAX_LOCAL_VIEWS],
             reach,
             held_reach,
+            demands: LocalDemands {
+                farthest,
+                range: input.range,
+                views: [None; MAX_LOCAL_VIEWS],
+            },
             ..self.clone()
         };
         drawn.iter_mut().for_each(Vec::clear);
@@ -73,17 +90,15 @@ impl LocalFit {
             let Some((min, max)) = view.needed(input, reached, nearest) else {
                 continue;
             };
-            let held_rect = HeldRect::fit(
-                &MapRectRequest {
-                    min,
-                    max,
-                    size_texels: UVec2::splat(input.map_size),
-                    margin_texels: input.margin_texels,
-                    texel_floor: texel_floor(light, reach),
-                    full_half_side: input.caster_tangent,
-                },
-                self.held[index].as_ref(),
-            );
+            let request = MapRectRequest {
+                min,
+                max,
+                size_texels: UVec2::splat(input.map_size),
+                margin_texels: input.margin_texels,
+                texel_floor: texel_floor(light, reach),
+                full_half_side: input.caster_tangent,
+            };
+            let held_rect = HeldRect::fit(&request, self.held[index].as_ref());
             let rect = held_rect.rect;
             let region = view.region(rect.min, rect.max(), nearest);
             let (mut near, mut caster_reach) = (f64::INFINITY, 0.0_f64);
@@ -99,16 +114,47 @@ impl LocalFit {
                 next.held[index] = Some(held_rect);
                 next.caster_reach[index] = caster_reach;
                 // A caster may begin where the reach ends; the view still has a depth range then.
-                next.near[index] = steady_near(near.min(0.5 * reach), self.near[index]);
+                let near = near.min(0.5 * reach);
+                next.near[index] = steady_near(near, self.near[index]);
+                next.demands.views[index] = Some((request, near));
             }
         }
         next
     }
 
+    /// Returns the fit for a frame in which nothing differs from the last. Only the time counts for
+    /// which extents have been larger than needed. Returns `None` where that time is over, so that
+    /// the whole fit is needed.
+    pub fn again(&self) -> Option<Self> {
+        let mut next = self.clone();
+        if let Some(farthest) = self.demands.farthest {
+            let held = HeldSize::following(self.held_reach, farthest);
+            if held.step().min(self.demands.range) != self.reach {
+                return None;
+            }
+            next.held_reach = Some(held);
+        }
+        for (index, demand) in self.demands.views.iter().enumerate() {
+            if let Some((request, near)) = demand {
+                let held = HeldRect::fit(request, self.held[index].as_ref());
+                let same_near = steady_near(*near, self.near[index]) == self.near[index];
+                if Some(held.rect) != self.rects[index] || !same_near {
+                    return None;
+                }
+                next.held[index] = Some(held);
+            }
+        }
+        Some(next)
+    }
+
     /// Returns the distance up to which the light matters: where the farthest receiver that is seen
     /// ends, and at most the light's range. It grows with what is seen at once, and shrinks late.
-    /// The second value is what is held of it.
-    fn reach(&self, input: &LocalInput<'_>, light: DVec3) -> (f64, Option<HeldSize>) {
+    /// The second value is what is held of it, and the third what was asked for.
+    fn reach(
+        &self,
+        input: &LocalInput<'_>,
+        light: DVec3,
+    ) -> (f64, Option<HeldSize>, Option<f64>) {
         // The six faces of a cube cover all directions together. The one view of a cone does not.
         let cone = match input.views {
             [axes] => {
@@ -119,12 +165,12 @@ impl LocalFit {
         };
         let farthest = reached::farthest_seen(input, light, &cone);
         if farthest <= 0.0 || farthest >= input.range {
-            return (farthest.min(input.range), self.held_reach);
+            return (farthest.min(input.range), self.held_reach, None);
         }
         // Vertices of what is seen are found within rounding.
         let farthest = farthest * (1.0 + 1e-6) + light.abs().max_element() * 1e-6;
         let held = HeldSize::following(self.held_reach, farthest);
-        (held.step().min(input.range), Some(held))
+        (held.step().min(input.range), Some(held), Some(farthest))
     }
 }
 
@@ -256,6 +302,10 @@ impl ViewFrame<'_> {
             max: local.max.truncate(),
             nearest: -local.max.z,
             farthest: -local.min.z,
+            coordinate: {
+                let corners = bounds.min.abs().max(bounds.max.abs()).max_element();
+                f64::from(corners) + self.light.abs().max_element()
+            },
         }
     }
 }
@@ -266,6 +316,17 @@ struct Span {
     max: DVec2,
     nearest: f64,
     farthest: f64,
+    /// Is the largest render coordinate that they are computed from.
+    coordinate: f64,
+}
+
+impl Span {
+    /// Returns more than tangents of points in the box may be off: so it does not matter which of
+    /// several equal ones is found first.
+    fn rounding(&self) -> f64 {
+        let widest = self.min.abs().max(self.max.abs()).max_element() / self.nearest;
+        64.0 * f64::EPSILON * (1.0 + widest) * (self.coordinate / self.nearest)
+    }
 }
 
 impl Extent {
@@ -280,8 +341,8 @@ impl Extent {
         let (low_near, low_far) = at(span.min);
         let (high_near, high_far) = at(span.max);
         span.nearest > 0.0
-            && self.min.cmple(low_near.min(low_far)).all()
-            && self.max.cmpge(high_near.max(high_far)).all()
+            && self.min.cmple(low_near.min(low_far) - span.rounding()).all()
+            && self.max.cmpge(high_near.max(high_far) + span.rounding()).all()
     }
 }
 

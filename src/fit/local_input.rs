@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 
-use crate::Aabb;
 use crate::fit::axes::LightAxes;
+use crate::fit::boxes::Boxes;
 use crate::fit::region::HalfSpaces;
+use crate::fit::visible::Receivers;
 
 /// Holds the input of a frame.
 pub(crate) struct LocalInput<'a> {
@@ -24,9 +25,8 @@ pub(crate) struct LocalInput<'a> {
     /// Holds the regions in which receivers count: what the cameras see, or everywhere.
     pub seen: &'a [HalfSpaces],
     /// Holds the bounds of what casts; empty ones cast nothing.
-    pub casters: &'a [Aabb],
-    /// Holds the bounds of what receives.
-    pub receivers: &'a [Aabb],
+    pub casters: Boxes<'a>,
+    pub receivers: Receivers<'a>,
     pub map_size: u32,
     pub margin_texels: u32,
 }

@@ -173,7 +173,36 @@ pub(crate) struct HeldBounds {
     pub depth: HeldDepth,
 }
 
+/// Is what a fit asked of the bounds of a cascade, so that the same can be asked again.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BoundsDemand {
+    pub request: MapRectRequest,
+    /// Is z of the deepest receiver.
+    pub far: f64,
+    /// Is z of all that shadows the receivers.
+    pub highest: f64,
+    /// Is z of the nearest caster that reaches into the bounds.
+    pub nearest: f64,
+    /// Is the least depth of the range.
+    pub least_depth: f64,
+    /// Is the range that holds `highest`.
+    pub reaching: DepthRange,
+}
+
 impl HeldBounds {
+    /// Returns what is held if the frame that asked for these bounds comes again. Returns `None`
+    /// where the bounds themselves change, because they were larger than needed for long enough.
+    pub fn again(&self, demand: &BoundsDemand) -> Option<Self> {
+        let depth =
+            |near| HeldDepth::fit(demand.far, near, demand.least_depth, Some(&self.depth));
+        let next = Self {
+            rect: HeldRect::fit(&demand.request, Some(&self.rect)),
+            depth: depth(demand.nearest),
+        };
+        let same_volume = depth(demand.highest).depth == demand.reaching;
+        (same_volume && next.bounds() == self.bounds()).then_some(next)
+    }
+
     /// Returns the bounds that are held.
     pub fn bounds(&self) -> LightSpaceBounds {
         LightSpaceBounds {

@@ -12,6 +12,8 @@
 //! split.rs        the depths at which one cascade ends and the next begins
 //! stability.rs    what may change the extent of a cascade
 //! image_corners.rs  the sphere around a slice of a camera's view
+//! bounds_tree.rs  a tree over boxes; boxes.rs: lists of boxes, with a tree or without
+//! sun_casters.rs  the casters of a frame as a directional light sees them
 //! visible.rs      what a camera sees of the receivers
 //! extruded_rect.rs  what reaches into the extruded map rectangle
 //! caster_shape.rs  what an engine may say of a caster's surface
@@ -32,6 +34,8 @@
 //! ```
 
 mod axes;
+mod bounds_tree;
+mod boxes;
 mod camera;
 mod cascade_bounds;
 mod cascade_layout;
@@ -58,6 +62,7 @@ mod size_step;
 mod spacing;
 mod split;
 mod stability;
+mod sun_casters;
 mod texel_rect;
 mod view;
 mod view_rounding;
@@ -66,6 +71,8 @@ mod visible;
 pub use axes::LightAxes;
 pub(crate) use axes::{LightBox, LightSpace};
 pub(crate) use camera::CameraFrustum;
+pub(crate) use bounds_tree::BoundsTree;
+pub(crate) use boxes::Boxes;
 pub use camera::CameraView;
 pub use cascade_layout::CascadeLayout;
 pub use caster_shape::CasterShape;

@@ -43,20 +43,28 @@ impl Reached {
         };
         self.casters.clear();
         self.receivers.clear();
-        let casters = (0u32..).zip(input.casters);
-        self.casters.extend(casters.filter_map(|(index, bounds)| {
-            near(bounds).map(|part| ReachedCaster {
+        let receivers = &mut self.receivers;
+        let touches = |around: &Aabb| near(around).is_some();
+        input.receivers.walk(
+            receivers,
+            |_, around| touches(around),
+            |receivers, _, bounds| receivers.extend(near(bounds)),
+        );
+        let visible = self.visible_bounds(input);
+        let reached_caster = |(index, bounds): (u32, &Aabb)| {
+            let part = near(bounds).filter(|_| can_shadow(bounds, &visible, light))?;
+            Some(ReachedCaster {
                 index,
                 bounds: part,
                 nearest: nearest_for(bounds, light, reach, input.map_size),
                 farthest_corner: farthest_corner(bounds, light).max_element(),
             })
-        }));
-        let receivers = input.receivers.iter().filter_map(near);
-        self.receivers.extend(receivers);
-        let visible = self.visible_bounds(input);
-        self.casters
-            .retain(|caster| can_shadow(&input.casters[caster.index as usize], &visible, light));
+        };
+        input.casters.walk(
+            &mut self.casters,
+            |_, around| touches(around),
+            |casters, index, bounds| casters.extend(reached_caster((index, bounds))),
+        );
     }
 
     /// Returns the least distance from the light at which a near plane of these casters can be.
@@ -98,24 +106,29 @@ pub(crate) fn farthest_seen(input: &LocalInput<'_>, light: DVec3, cone: &HalfSpa
     for seen in input.seen {
         let mut region = *seen;
         cone.as_slice().iter().for_each(|plane| region.push(*plane));
-        for bounds in input.receivers.iter().filter(|bounds| !bounds.is_empty()) {
-            let corner = farthest_corner(bounds, light).length();
-            if corner <= farthest {
-                continue;
-            }
-            if region.relation(bounds) == Relation::Inside {
-                farthest = corner;
-            } else {
-                region.visit_vertices(bounds, |vertex| {
-                    farthest = farthest.max(vertex.distance(light));
-                });
-            }
-            if farthest >= input.range {
-                return input.range;
-            }
-        }
+        input.receivers.walk(
+            &mut farthest,
+            |farthest, around| {
+                *farthest < input.range
+                    && farthest_corner(around, light).length() > *farthest
+                    && !region.surely_misses(around)
+            },
+            |farthest, _, bounds| {
+                let corner = farthest_corner(bounds, light).length();
+                if corner <= *farthest || *farthest >= input.range {
+                    return;
+                }
+                if region.relation(bounds) == Relation::Inside {
+                    *farthest = corner;
+                } else {
+                    region.visit_vertices(bounds, |vertex| {
+                        *farthest = farthest.max(vertex.distance(light));
+                    });
+                }
+            },
+        );
     }
-    farthest
+    farthest.min(input.range)
 }
 
 /// Returns the distances of the farthest corner of a box from a point along each axis.

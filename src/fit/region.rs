@@ -133,6 +133,19 @@ impl HalfSpaces {
         relation
     }
 
+    /// Returns whether the region surely has nothing of `around`, nor of any box in it as
+    /// [`relation`](Self::relation) judges that one, whatever the rounding.
+    pub fn surely_misses(&self, around: &Aabb) -> bool {
+        let (min, max) = (around.min.as_dvec3(), around.max.as_dvec3());
+        let (center, half) = ((min + max) * 0.5, (max - min) * 0.5);
+        // Each of the distances is a sum of four products, which are rounded by an ulp or two.
+        let reach = 32.0 * f64::EPSILON * min.abs().max(max.abs()).element_sum();
+        self.as_slice().iter().any(|plane| {
+            let slack = reach + 32.0 * f64::EPSILON * plane.offset.abs();
+            plane.distance(center) < -plane.normal.abs().dot(half) - slack
+        })
+    }
+
     /// Calls `visit` with points whose convex hull is the region's intersection with `bounds`
     /// (never fewer; duplicates are possible). An empty intersection makes no call.
     pub fn visit_vertices(&self, bounds: &Aabb, mut visit: impl FnMut(DVec3)) {

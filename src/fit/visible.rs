@@ -5,6 +5,7 @@ use glam::DVec3;
 
 use crate::Aabb;
 use crate::fit::axes::{LightBox, LightSpace};
+use crate::fit::boxes::Boxes;
 use crate::fit::camera::CameraFrustum;
 use crate::fit::region::{HalfSpaces, Relation};
 
@@ -105,6 +106,25 @@ impl SeenBounds {
         all
     }
 
+    /// Returns whether a shadow of `caster` can fall on anything visible. A point is shadowed by a
+    /// point of the caster further along the way to the light, so on each world axis the caster
+    /// must reach beyond the receivers' near end in the light's direction. A flat floor under
+    /// everything else fails this (it reaches just as far as the lowest receiver: itself), and
+    /// neither widens the light-space bounds nor is drawn.
+    pub fn can_be_shadowed_by(&self, caster: &Aabb, toward_light: DVec3) -> bool {
+        let (low, high) = (caster.min.as_dvec3(), caster.max.as_dvec3());
+        (0..3).all(|axis| {
+            let toward = toward_light[axis];
+            if toward > 0.0 {
+                high[axis] > self.render_min[axis]
+            } else if toward < 0.0 {
+                low[axis] < self.render_max[axis]
+            } else {
+                high[axis] >= self.render_min[axis] && low[axis] <= self.render_max[axis]
+            }
+        })
+    }
+
     fn include(&mut self, seen: &Seen, render_min: DVec3, render_max: DVec3) {
         self.render_min = self.render_min.min(render_min);
         self.render_max = self.render_max.max(render_max);
@@ -116,17 +136,34 @@ impl SeenBounds {
 /// Holds the surfaces on which shadows are looked up in a frame.
 #[derive(Clone, Copy)]
 pub(crate) struct Receivers<'a> {
-    /// Holds the bounds in render space.
-    pub bounds: &'a [Aabb],
-    /// Holds, for each of them, the index of the caster whose surface it is, or `None` where it is
-    /// not a caster's.
-    pub casters: &'a [Option<u32>],
+    /// Holds the bounds, in render space, of those that do not cast.
+    pub given: &'a [Aabb],
+    /// Holds the bounds of those that may cast, by their indices as casters.
+    pub casters: Boxes<'a>,
 }
 
 impl<'a> Receivers<'a> {
+    /// Calls `meet` with the bounds of each receiver and the index of the caster whose surface it
+    /// is, if it is one's, as [`Boxes::walk`] does.
+    pub fn walk<S>(
+        &self,
+        state: &mut S,
+        enters: impl FnMut(&S, &Aabb) -> bool,
+        mut meet: impl FnMut(&mut S, Option<u32>, &'a Aabb),
+    ) {
+        for bounds in self.given.iter().filter(|bounds| !bounds.is_empty()) {
+            meet(state, None, bounds);
+        }
+        self.casters.walk(state, enters, |state, index, bounds| {
+            meet(state, Some(index), bounds);
+        });
+    }
+
     /// Returns the bounds that are not empty, with the casters whose surfaces they are.
     pub fn iter(&self) -> impl Iterator<Item = (&'a Aabb, Option<u32>)> + use<'a> {
-        let all = self.bounds.iter().zip(self.casters.iter().copied());
+        let given = self.given.iter().map(|bounds| (bounds, None));
+        let casters = (0u32..).zip(self.casters.bounds);
+        let all = given.chain(casters.map(|(index, bounds)| (bounds, Some(index))));
         all.filter(|(bounds, _)| !bounds.is_empty())
     }
 }
@@ -168,7 +205,8 @@ impl SeenLists {
         receivers: Receivers<'_>,
         all: &mut SeenBounds,
     ) {
-        for (bounds, caster) in receivers.iter() {
+        let enters = |_: &_, around: &Aabb| !camera.planes.surely_misses(around);
+        receivers.walk(&mut (self, all), enters, |(lists, all), caster, bounds| {
             let mut receiver = SeenReceiver::whole(bounds, caster);
             let mut part = Seen {
                 camera: index,
@@ -178,7 +216,7 @@ impl SeenLists {
                 depth_far: f64::NEG_INFINITY,
             };
             match camera.planes.relation(bounds) {
-                Relation::Outside => continue,
+                Relation::Outside => return,
                 Relation::Inside => {
                     let middle = camera.depth((receiver.min + receiver.max) * 0.5);
                     let half = (receiver.max - receiver.min) * 0.5;
@@ -197,14 +235,14 @@ impl SeenLists {
                         part.depth_far = part.depth_far.max(depth);
                     });
                     if part.depth_near > part.depth_far {
-                        continue;
+                        return;
                     }
                 }
             }
             all.include(&part, receiver.min, receiver.max);
-            self.seen.push(part);
-            self.parts.push(receiver);
-        }
+            lists.seen.push(part);
+            lists.parts.push(receiver);
+        });
     }
 }
 
@@ -219,8 +257,12 @@ pub(crate) fn light_box_between(
     let slice = camera.slice(between.0, between.1);
     let mut covered = LightBox::EMPTY;
     for part in seen.iter().filter(|part| part.reaches(index, between)) {
+        let whole = space.bounds(&part.bounds);
+        if covered.surely_holds(&whole) {
+            continue;
+        }
         if part.is_within(between) {
-            covered.union(&space.bounds(&part.bounds));
+            covered.union(&whole);
         } else {
             slice.visit_vertices(&part.bounds, |vertex| covered.include(space.point(vertex)));
         }
@@ -230,16 +272,21 @@ pub(crate) fn light_box_between(
 
 /// Calls `visit` with points whose convex hull is, for each part that the camera at `index` sees
 /// between two depths, its intersection with `over`, the sides of a rectangle across the light.
+/// Parts for whose bounds `counts` returns false are left out.
 pub(crate) fn visit_between(
     (index, camera): (usize, &CameraFrustum),
     seen: &[Seen],
     between: (f64, f64),
     over: &HalfSpaces,
+    counts: impl Fn(&Aabb) -> bool,
     mut visit: impl FnMut(DVec3),
 ) {
     let mut region = camera.slice(between.0, between.1);
     over.as_slice().iter().for_each(|side| region.push(*side));
     for part in seen.iter().filter(|part| part.reaches(index, between)) {
+        if !counts(&part.bounds) {
+            continue;
+        }
         let part_region = if part.is_within(between) {
             over
         } else {

@@ -6,10 +6,11 @@ use crate::cast::{FrameCasters, ViewDraws};
 use crate::check;
 use crate::fit::{
     CascadeLayout, DirectionalFit, FitInput, FitLimits, FitScratch, LightAxes, LightSpace,
-    MAX_CASCADES, Receivers, Region, TexelRect,
+    MAX_CASCADES, Region, TexelRect,
 };
 use crate::light::distance_limit::{distance_limit, shadowed_texels};
 use crate::light::large_triangles::depth_reach;
+use crate::light::scene::FrameContent;
 use crate::receive::{
     LayerState, MapsFrame, Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, ShadowReport,
     check_bias, check_fade, check_planar_filter,
@@ -153,6 +154,8 @@ pub struct DirectionalShadow {
     limits: FitLimits,
     fit: DirectionalFit,
     scratch: FitScratch,
+    /// Is what the maps were last recorded for.
+    last: Option<(FrameContent, DirectionalLight)>,
 }
 
 impl DirectionalShadow {
@@ -228,6 +231,7 @@ impl DirectionalShadow {
             },
             fit: DirectionalFit::default(),
             scratch: FitScratch::default(),
+            last: None,
         })
     }
 
@@ -250,6 +254,14 @@ impl DirectionalShadow {
         frame: &ShadowFrame<'_>,
         light: &DirectionalLight,
     ) -> Result<&ShadowReport, ShadowError> {
+        let now = (frame.content, *light);
+        if self.last == Some(now) && self.maps.settled_report().is_some() {
+            if let Some(fit) = self.fit.again() {
+                self.fit = fit;
+                return Ok(self.maps.report());
+            }
+        }
+        self.last = None;
         let axes = light.axes()?;
         self.check_distances(frame)?;
         let input = FitInput {
@@ -258,12 +270,9 @@ impl DirectionalShadow {
                 origin: frame.origin,
             },
             region: frame.region,
-            casters: frame.casters.bounds,
-            shapes: frame.casters.shapes,
-            receivers: Receivers {
-                bounds: frame.receivers,
-                casters: frame.receiver_casters,
-            },
+            casters: frame.casters.casting(),
+            shapes: frame.casters.shapes(),
+            receivers: frame.receivers,
         };
         let fit = self.fit.fit(&input, &self.limits, &mut self.scratch)?;
         let views = self.drawn_views(&fit, &input, &frame.casters)?;
@@ -286,6 +295,7 @@ impl DirectionalShadow {
         }
         let report = self.maps.record(encoder, maps_frame)?;
         self.fit = fit;
+        self.last = Some(now);
         Ok(report)
     }
 
@@ -350,6 +360,7 @@ impl DirectionalShadow {
     /// it where the camera cuts to another scene.
     pub fn reset_history(&mut self) {
         self.fit = DirectionalFit::default();
+        self.last = None;
     }
 
     /// Declares the contents of the maps invalid ([what a kept map relies

@@ -19,8 +19,12 @@ pub(crate) fn depth_reach(view: &ShadowView, casters: &FrameCasters<'_>, drawn: 
     let mut reach = view.render_reach();
     let center = view.anchor_render().as_dvec3();
     let radius = reach - center.abs().max_element();
+    let boxes = casters.casting();
     for &caster in drawn {
-        let bounds = &casters.bounds[caster as usize];
+        let bounds = boxes.at(caster);
+        if all_corners_within(bounds, center, radius) {
+            continue;
+        }
         let corners_away = corners_away(bounds, center, radius);
         if corners_away <= radius {
             continue;
@@ -31,6 +35,13 @@ pub(crate) fn depth_reach(view: &ShadowView, casters: &FrameCasters<'_>, drawn: 
         reach = reach.max(view.render_reach() + LARGE_TRIANGLE_ROUNDING * away);
     }
     reach
+}
+
+/// Returns whether the whole box is within a sphere, whatever the rounding. That is so of most.
+fn all_corners_within(bounds: &Aabb, center: DVec3, radius: f64) -> bool {
+    let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+    let farthest = (center - min).abs().max((max - center).abs());
+    farthest.length_squared() < radius * radius * (1.0 - 1e-12)
 }
 
 /// Returns the distance from `center` to the fourth nearest corner of a box, which is the distance

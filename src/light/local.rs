@@ -6,6 +6,7 @@ use glam::DVec3;
 use crate::cast::ViewDraws;
 use crate::fit::{LightAxes, LocalFit, LocalInput, MAX_LOCAL_VIEWS, PerspectiveView, Reached};
 use crate::light::distance_limit::range_limit;
+use crate::light::scene::FrameContent;
 use crate::receive::{ALL_TEXELS, LayerState, MapsFrame, ShadowMaps, ShadowMapsDescriptor};
 use crate::{ShadowError, ShadowFrame, ShadowView, report::ShadowReport};
 
@@ -21,6 +22,11 @@ pub(crate) struct LocalLights {
     candidates: Vec<Candidate>,
     layers: Vec<LayerState>,
     reached: Reached,
+    /// Is what the maps were last recorded for, with the list after this.
+    last_content: Option<FrameContent>,
+    last_lights: Vec<LocalPlacement>,
+    /// Is reused from frame to frame for its memory.
+    fits: Vec<LocalFit>,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -40,7 +46,7 @@ struct SlotState {
 }
 
 /// Describes a light of a frame, in terms that spot and point lights have in common.
-#[derive(Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LocalPlacement {
     pub slot: u32,
     pub position_world: DVec3,
@@ -85,6 +91,9 @@ impl LocalLights {
             candidates: Vec::new(),
             layers: Vec::new(),
             reached: Reached::default(),
+            last_content: None,
+            last_lights: Vec::new(),
+            fits: Vec::new(),
         })
     }
 
@@ -100,6 +109,7 @@ impl LocalLights {
 
     /// Discards the extents of earlier frames.
     pub fn reset_history(&mut self) {
+        self.last_content = None;
         for slot in &mut self.slots {
             slot.fit = LocalFit::default();
         }
@@ -107,6 +117,7 @@ impl LocalLights {
 
     /// Resets the state of a slot, whose next light then has no map until it is drawn.
     pub fn reset(&mut self, slot: u32) {
+        self.last_content = None;
         self.slots[slot as usize] = SlotState::default();
     }
 
@@ -119,6 +130,10 @@ impl LocalLights {
         lights: &[LocalPlacement],
         max_views: Option<u32>,
     ) -> Result<&ShadowReport, ShadowError> {
+        if self.is_as_before(frame, lights) {
+            return Ok(self.maps.report());
+        }
+        self.last_content = None;
         let mut candidates = std::mem::take(&mut self.candidates);
         candidates.clear();
         for light in lights {
@@ -191,7 +206,32 @@ impl LocalLights {
             }
         }
         self.candidates = candidates;
+        self.last_content = Some(frame.content);
+        self.last_lights.clear();
+        self.last_lights.extend_from_slice(lights);
         Ok(report)
+    }
+
+    /// Returns whether a frame is the last one again and leaves all views as they are. The time
+    /// that has passed is then counted.
+    fn is_as_before(&mut self, frame: &ShadowFrame<'_>, lights: &[LocalPlacement]) -> bool {
+        if self.last_content != Some(frame.content)
+            || self.maps.settled_report().is_none()
+            || self.last_lights != lights
+        {
+            return false;
+        }
+        self.fits.clear();
+        for light in lights {
+            let Some(fit) = self.slots[light.slot as usize].fit.again() else {
+                return false;
+            };
+            self.fits.push(fit);
+        }
+        for (light, fit) in lights.iter().zip(self.fits.drain(..)) {
+            self.slots[light.slot as usize].fit = fit;
+        }
+        true
     }
 
     /// Fits and culls one light, and returns what would refresh it.
@@ -212,7 +252,7 @@ impl LocalLights {
                 * border(maps.map_size(), maps.sampling().border_texels()),
             looks_around: maps.sampling().filter.directions().is_some(),
             seen: frame.seen,
-            casters: frame.casters.bounds,
+            casters: frame.casters.casting(),
             receivers: frame.receivers,
             map_size: maps.map_size(),
             margin_texels: maps.sampling().margin_texels(),

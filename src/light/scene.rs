@@ -1,11 +1,13 @@
 //! Defines the input of a frame for all lights: origin, cameras, casters and receivers, which are
 //! checked and collected once.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use glam::{DVec3, Vec3};
 
-use crate::cast::{BrokenBounds, CasterAnswers, FrameCasters, ShadowCaster, sound_bounds};
+use crate::cast::{BrokenBounds, CasterAnswers, Casters, Content, FrameCasters, sound_bounds};
 use crate::check;
-use crate::fit::{CameraFrustum, HalfSpaces, Region};
+use crate::fit::{CameraFrustum, HalfSpaces, Receivers, Region};
 use crate::{Aabb, CameraView, ShadowError};
 
 /// Selects the receivers for which the shadows of a frame are rendered. Maps cover no other
@@ -56,9 +58,10 @@ pub struct ShadowFrameDescriptor<'d, 'c> {
     pub origin: DVec3,
     /// Selects the receivers for which the shadows are rendered.
     pub coverage: Coverage<'d>,
-    /// Lists all objects that may cast. All of them receive as well, unless
-    /// [`ShadowCaster::receives`] returns false.
-    pub casters: &'c [&'c dyn ShadowCaster],
+    /// Holds all objects that may cast: a list, or a [`CasterSet`](crate::CasterSet) in scenes of
+    /// many. All of them receive as well, unless
+    /// [`ShadowCaster::receives`](crate::ShadowCaster::receives) returns false.
+    pub casters: Casters<'c>,
     /// Lists the bounds, in render space, of the surfaces that receive and do not cast. Each must
     /// be finite or empty; others are left out of the frame and named by
     /// [`ShadowFrame::broken_bounds`]. A surface that is missing here may lie outside the maps, and
@@ -66,15 +69,37 @@ pub struct ShadowFrameDescriptor<'d, 'c> {
     pub receivers: &'d [Aabb],
 }
 
+/// Identifies the content of a frame: two frames with equal ones are equal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct FrameContent {
+    casters: Content,
+    /// Is unique in the process for all but the casters.
+    surroundings: u64,
+}
+
+/// Is all that a frame is made of, apart from its casters and the list of its receivers.
+#[derive(Clone, Debug, PartialEq)]
+struct Surroundings {
+    origin: DVec3,
+    cameras: Vec<CameraView>,
+    /// Is `None` where the coverage is a list of cameras, empty where it is everything.
+    bounds: Option<Option<Aabb>>,
+}
+
+static NEXT_SURROUNDINGS: AtomicU64 = AtomicU64::new(0);
+
 /// Holds the scene that lights share. It reuses the memory of its lists from frame to frame.
 #[derive(Debug, Default)]
 pub struct ShadowScene {
     answers: CasterAnswers,
     broken: Vec<BrokenBounds>,
     receivers: Vec<Aabb>,
-    receiver_casters: Vec<Option<u32>>,
     cameras: Vec<CameraFrustum>,
     seen: Vec<HalfSpaces>,
+    /// Holds the surroundings of the last frame, with their number.
+    surroundings: Option<(Surroundings, u64)>,
+    /// Holds the receivers of the last frame as they were given.
+    given_receivers: Vec<Aabb>,
 }
 
 impl ShadowScene {
@@ -84,9 +109,10 @@ impl ShadowScene {
     }
 
     /// Checks a frame and collects the bounds of its casters, once for all lights that are recorded
-    /// with it. The methods of every caster but [`pipeline`](ShadowCaster::pipeline) and
-    /// [`draw`](ShadowCaster::draw) are called here; while the lights are recorded, only these two
-    /// are called.
+    /// with it. The methods of every caster of a list but
+    /// [`pipeline`](crate::ShadowCaster::pipeline) and [`draw`](crate::ShadowCaster::draw) are
+    /// called here; while the lights are recorded, only these two are called. Of a set, none is
+    /// called here.
     ///
     /// # Errors
     /// Returns [`ShadowError`] for an origin that is not finite, for a camera whose matrices are
@@ -97,6 +123,7 @@ impl ShadowScene {
         &'a mut self,
         descriptor: &ShadowFrameDescriptor<'_, 'a>,
     ) -> Result<ShadowFrame<'a>, ShadowError> {
+        let surroundings = self.note_surroundings(descriptor);
         check::finite_vector("ShadowFrameDescriptor::origin", descriptor.origin)?;
         self.cameras.clear();
         self.seen.clear();
@@ -123,18 +150,17 @@ impl ShadowScene {
             let place = ("ShadowFrameDescriptor::receivers", index);
             sound_bounds(place, *bounds, &mut self.broken)
         }));
-        self.receiver_casters.clear();
-        self.receiver_casters.resize(self.receivers.len(), None);
-        let casters = self.answers.ask(
+        let casters = FrameCasters::ask(
             "ShadowFrameDescriptor::casters",
             descriptor.casters,
+            &mut self.answers,
             &mut self.broken,
-            |caster, bounds| {
-                self.receivers.push(bounds);
-                self.receiver_casters.push(Some(caster));
-            },
         );
         Ok(ShadowFrame {
+            content: FrameContent {
+                casters: casters.content(),
+                surroundings,
+            },
             origin: descriptor.origin,
             region: match descriptor.coverage {
                 Coverage::Cameras(_) => Region::Cameras(&self.cameras),
@@ -143,26 +169,58 @@ impl ShadowScene {
             },
             seen: &self.seen,
             casters,
-            receivers: &self.receivers,
-            receiver_casters: &self.receiver_casters,
+            receivers: Receivers {
+                given: &self.receivers,
+                casters: casters.receiving(),
+            },
         })
+    }
+
+    /// Returns the number of the surroundings of a frame, a new one unless they are those of the
+    /// last frame.
+    fn note_surroundings(&mut self, descriptor: &ShadowFrameDescriptor<'_, '_>) -> u64 {
+        let (cameras, bounds) = match descriptor.coverage {
+            Coverage::Cameras(cameras) => (cameras, None),
+            Coverage::Bounds(bounds) => (&[][..], Some(Some(bounds))),
+            Coverage::Everything => (&[][..], Some(None)),
+        };
+        if let Some((last, number)) = &self.surroundings {
+            if last.origin == descriptor.origin
+                && last.cameras == cameras
+                && last.bounds == bounds
+                && self.given_receivers == descriptor.receivers
+            {
+                return *number;
+            }
+        }
+        let number = NEXT_SURROUNDINGS.fetch_add(1, Ordering::Relaxed);
+        self.given_receivers.clear();
+        self.given_receivers.extend_from_slice(descriptor.receivers);
+        let mut list = self.surroundings.take().map(|(last, _)| last.cameras);
+        let list = list.get_or_insert_default();
+        list.clear();
+        list.extend_from_slice(cameras);
+        let surroundings = Surroundings {
+            origin: descriptor.origin,
+            cameras: std::mem::take(list),
+            bounds,
+        };
+        self.surroundings = Some((surroundings, number));
+        number
     }
 }
 
 /// Holds a checked frame of a [`ShadowScene`]. Lights are recorded with it.
 #[derive(Clone, Copy)]
 pub struct ShadowFrame<'a> {
+    pub(crate) content: FrameContent,
     pub(crate) origin: DVec3,
     pub(crate) region: Region<'a>,
     /// Holds the same region as intersections of half-spaces: receivers count where they lie in one
     /// of these.
     pub(crate) seen: &'a [HalfSpaces],
     pub(crate) casters: FrameCasters<'a>,
-    /// Holds the bounds of all receivers.
-    pub(crate) receivers: &'a [Aabb],
-    /// Holds, for each receiver, the index of the caster whose surface it is, or `None` where it is
-    /// not a caster's.
-    pub(crate) receiver_casters: &'a [Option<u32>],
+    pub(crate) receivers: Receivers<'a>,
 }
 
 impl ShadowFrame<'_> {

@@ -38,6 +38,8 @@ pub struct ShadowMaps {
     views: Vec<ViewDraws>,
     uniform_values: Vec<ShadowViewUniform>,
     report: ShadowReport,
+    /// States that the last frame left all views as they were, so that an equal frame does the same.
+    is_settled: bool,
     memory: Memory,
 }
 
@@ -136,6 +138,7 @@ impl ShadowMaps {
             views: Vec::new(),
             uniform_values: vec![empty_view_uniform(0, Vec3::ZERO, f64::INFINITY); views as usize],
             report,
+            is_settled: false,
             memory: Memory::default(),
         })
     }
@@ -210,6 +213,7 @@ impl ShadowMaps {
     /// Resets the state of all layers and of the uniform buffer, so that the next frame draws and
     /// uploads everything.
     pub(crate) fn invalidate(&mut self) {
+        self.is_settled = false;
         self.recorder.invalidate();
         self.uniforms.invalidate();
     }
@@ -245,6 +249,7 @@ impl ShadowMaps {
             casters,
             predicted_error,
         } = frame;
+        self.is_settled = false;
         let device = &self.device.clone();
         let prepared = self
             .recorder
@@ -276,7 +281,13 @@ impl ShadowMaps {
         self.memory.views = old_views;
         self.report.predicted_error = predicted_error;
         self.fill_report(layers, &casters);
+        self.is_settled = self.views.iter().all(|draws| !draws.deferred) && self.report.passes == 0;
         Ok(&self.report)
+    }
+
+    /// Returns the report of the last frame if an equal frame leaves all views as they are.
+    pub(crate) fn settled_report(&self) -> Option<&ShadowReport> {
+        self.is_settled.then_some(&self.report)
     }
 
     /// Returns the uniforms of the frame, one per view.

@@ -5,7 +5,7 @@ use shadow_support::camera::Camera;
 use shadow_support::mesh::Mesh;
 use wgpu_shadows::{
     Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, ShadowCaster,
-    ShadowFrameDescriptor, ShadowScene, report::ViewStatus,
+    Casters, ShadowFrameDescriptor, ShadowScene, report::ViewStatus,
 };
 
 use crate::fixtures::gpu::gpu;
@@ -36,7 +36,7 @@ fn who_casts_and_who_receives() {
             .frame(&ShadowFrameDescriptor {
                 origin: DVec3::ZERO,
                 coverage: Coverage::Cameras(&[camera]),
-                casters,
+                casters: Casters::List(casters),
                 receivers: &[],
             })
             .expect("a valid frame");

@@ -7,7 +7,7 @@ use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use wgpu_shadows::{
     Aabb, CameraView, Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    OmniLight, OmniShadow, OmniShadowDescriptor, ShadowFrameDescriptor, ShadowScene, Stability,
+    OmniLight, OmniShadow, OmniShadowDescriptor, Casters, ShadowFrameDescriptor, ShadowScene, Stability,
 };
 
 use crate::fixtures::ask::Ask;
@@ -41,7 +41,7 @@ fn seen(
         .frame(&ShadowFrameDescriptor {
             origin: DVec3::ZERO,
             coverage: Coverage::Cameras(cameras),
-            casters: &list,
+            casters: Casters::List(&list),
             receivers: &[],
         })
         .expect("a valid frame");
@@ -221,7 +221,7 @@ fn shadows_end_at_a_covered_box() {
             .frame(&ShadowFrameDescriptor {
                 origin: DVec3::ZERO,
                 coverage: Coverage::Bounds(Aabb::new(low, high)),
-                casters: &list,
+                casters: Casters::List(&list),
                 receivers: &[],
             })
             .expect("a valid frame");
@@ -281,7 +281,7 @@ fn a_lamps_shadows_fade_before_its_range() {
         .frame(&ShadowFrameDescriptor {
             origin: DVec3::ZERO,
             coverage: Coverage::Everything,
-            casters: &list,
+            casters: Casters::List(&list),
             receivers: &[Aabb::new(Vec3::splat(-30.0), Vec3::splat(30.0))],
         })
         .expect("a valid frame");

@@ -7,7 +7,7 @@ use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use wgpu_shadows::{
     Aabb, CameraView, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    ShadowCaster, ShadowError, ShadowFrameDescriptor, ShadowScene,
+    ShadowCaster, ShadowError, Casters, ShadowFrameDescriptor, ShadowScene,
 };
 
 use crate::fixtures::frames::{Coverage, DirectionalFrame, RecordFrame};
@@ -283,7 +283,7 @@ fn errors_name_the_camera() {
         .frame(&ShadowFrameDescriptor {
             origin: DVec3::ZERO,
             coverage: wgpu_shadows::Coverage::Cameras(&[good, good, bad]),
-            casters: &[],
+            casters: Casters::List(&[]),
             receivers: &[],
         })
         .err()

@@ -10,6 +10,7 @@ mod boxes;
 mod cameras;
 mod cascade_tint;
 mod caster_errors;
+mod caster_set;
 mod casters;
 mod casts_and_receives;
 mod closed_solids;

@@ -9,7 +9,7 @@ use shadow_support::random::Random;
 use shadow_support::triangle::{Triangle, occluded};
 use wgpu_shadows::{
     Aabb, CameraView, Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowCaster, ShadowFrameDescriptor,
+    MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowCaster, Casters, ShadowFrameDescriptor,
     ShadowScene, ShadowView, SpotLight, SpotShadow, SpotShadowDescriptor, Stability,
     report::ShadowReport, report::ViewStatus,
 };
@@ -149,7 +149,7 @@ fn two_cameras_share_the_maps_of_a_sun() {
                 .frame(&ShadowFrameDescriptor {
                     origin: DVec3::ZERO,
                     coverage: Coverage::Cameras(&cameras),
-                    casters: &list,
+                    casters: Casters::List(&list),
                     receivers: &yards.floors,
                 })
                 .expect("a valid frame");
@@ -195,7 +195,7 @@ fn a_mirror_sees_what_its_camera_sees() {
             .frame(&ShadowFrameDescriptor {
                 origin: DVec3::ZERO,
                 coverage: Coverage::Cameras(cameras),
-                casters: &list,
+                casters: Casters::List(&list),
                 receivers: &yards.floors,
             })
             .expect("a valid frame");
@@ -258,7 +258,7 @@ fn two_cameras_share_the_maps_of_local_lights() {
         .frame(&ShadowFrameDescriptor {
             origin: DVec3::ZERO,
             coverage: Coverage::Cameras(&cameras),
-            casters: &list,
+            casters: Casters::List(&list),
             receivers: &yards.floors,
         })
         .expect("a valid frame");
@@ -319,7 +319,7 @@ fn coverage_is_one_for_all_lights() {
             .frame(&ShadowFrameDescriptor {
                 origin: DVec3::ZERO,
                 coverage,
-                casters: &list,
+                casters: Casters::List(&list),
                 receivers: &yards.floors,
             })
             .expect("a valid frame");

@@ -5,7 +5,7 @@ use std::error::Error;
 use wgpu_shadows::{
     Bias, Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter,
     MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowBindings,
-    ShadowBindingsDescriptor, ShadowCaster, ShadowError, ShadowFrameDescriptor, ShadowScene,
+    ShadowBindingsDescriptor, ShadowCaster, ShadowError, Casters, ShadowFrameDescriptor, ShadowScene,
     SpotLight, SpotShadow, SpotShadowDescriptor, report::ShadowReport, report::ViewStatus,
 };
 
@@ -157,7 +157,7 @@ impl Technique for LibraryTechnique<'_> {
             } else {
                 Coverage::Bounds(scene.bounds())
             },
-            casters: &self.casters,
+            casters: Casters::List(&self.casters),
             receivers: &[],
         })?;
         let report = match (&mut self.shadow, scene.light) {

@@ -1,0 +1,237 @@
+//! Holds what the methods of casters returned, by the casters' indices.
+
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::Aabb;
+use crate::cast::{Revision, ShadowCaster};
+use crate::fit::{BoundsTree, CasterShape};
+
+/// Holds what the methods of a caster returned, apart from its bounds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CasterFacts {
+    pub revision: Option<Revision>,
+    pub triangles: u32,
+    pub same_in_every_view: bool,
+    pub keeps_pass_state: bool,
+}
+
+impl CasterFacts {
+    const NOTHING: Self = Self {
+        revision: None,
+        triangles: 0,
+        same_in_every_view: true,
+        keeps_pass_state: true,
+    };
+}
+
+/// Is what the methods of one caster returned.
+pub(crate) struct CasterAnswer {
+    bounds: Aabb,
+    casts: bool,
+    receives: bool,
+    shape: CasterShape,
+    facts: CasterFacts,
+}
+
+impl CasterAnswer {
+    /// Calls the methods of a caster.
+    pub fn of(caster: &(impl ShadowCaster + ?Sized)) -> Self {
+        Self {
+            bounds: caster.bounds(),
+            casts: caster.casts(),
+            receives: caster.receives(),
+            shape: caster.shape(),
+            facts: CasterFacts {
+                revision: caster.revision(),
+                triangles: caster.triangles(),
+                same_in_every_view: caster.same_in_every_view(),
+                keeps_pass_state: caster.keeps_pass_state(),
+            },
+        }
+    }
+}
+
+/// Identifies a state of some answers: two states with equal numbers are equal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Content {
+    /// Identifies the answers in the process.
+    source: u64,
+    /// Counts the changes of what the fit uses.
+    fit: u64,
+    /// Counts all changes.
+    all: u64,
+    /// Counts the frames in which a caster may always look different; 0 where there is none.
+    frame: u64,
+}
+
+impl Content {
+    /// Returns the number of a state that lasts for one frame.
+    pub fn in_frame(self, frame: u64) -> Self {
+        Self {
+            frame: frame + 1,
+            ..self
+        }
+    }
+}
+
+/// Holds the answers of casters. A caster with bounds that are neither finite nor empty counts as
+/// one that neither casts nor receives.
+#[derive(Debug)]
+pub(crate) struct CasterAnswers {
+    /// Has one entry per caster, empty for one that does not cast.
+    pub casts: Vec<Aabb>,
+    /// Has one entry per caster, empty for one that does not receive.
+    pub receives: Vec<Aabb>,
+    pub shapes: Vec<CasterShape>,
+    pub facts: Vec<CasterFacts>,
+    /// Finds casters by the box around both of their bounds; `None` where none is kept.
+    pub tree: Option<BoundsTree>,
+    /// Holds the bounds that are neither finite nor empty.
+    pub broken: BTreeMap<u32, Aabb>,
+    /// Counts the casters that may look different in every frame.
+    pub always_changing: usize,
+    content: Content,
+}
+
+static NEXT_SOURCE: AtomicU64 = AtomicU64::new(0);
+
+impl Default for CasterAnswers {
+    fn default() -> Self {
+        Self::new(false)
+    }
+}
+
+impl CasterAnswers {
+    /// Makes an empty list, with a tree that follows it or without one.
+    pub fn new(has_tree: bool) -> Self {
+        Self {
+            casts: Vec::new(),
+            receives: Vec::new(),
+            shapes: Vec::new(),
+            facts: Vec::new(),
+            tree: has_tree.then(BoundsTree::default),
+            broken: BTreeMap::new(),
+            always_changing: 0,
+            content: Content {
+                source: NEXT_SOURCE.fetch_add(1, Ordering::Relaxed),
+                fit: 0,
+                all: 0,
+                frame: 0,
+            },
+        }
+    }
+
+    /// Returns the number of the present state.
+    pub fn content(&self) -> Content {
+        self.content
+    }
+
+    /// Makes the present state another than that of all frames before.
+    pub fn count_frame(&mut self) {
+        self.content.frame += 1;
+    }
+
+    /// Sets the answer of the caster at `index`, which is at most the number of entries.
+    pub fn put(&mut self, index: u32, answer: &CasterAnswer) {
+        let bounds = answer.bounds;
+        if !self.broken.is_empty() {
+            self.broken.remove(&index);
+        }
+        let is_sound = bounds.is_empty() || bounds.is_finite();
+        if !is_sound {
+            self.broken.insert(index, bounds);
+        }
+        let role = |has_it: bool| if has_it && is_sound { bounds } else { Aabb::EMPTY };
+        self.write(
+            index,
+            (role(answer.casts), role(answer.receives)),
+            answer.shape,
+            answer.facts,
+        );
+    }
+
+    /// Makes the entry at `index` one of no caster.
+    pub fn clear(&mut self, index: u32) {
+        self.broken.remove(&index);
+        // A revision of its own keeps the entry from counting as always changing.
+        let facts = CasterFacts {
+            revision: Some(Revision::new(0, 0)),
+            ..CasterFacts::NOTHING
+        };
+        let none = (Aabb::EMPTY, Aabb::EMPTY);
+        self.write(index, none, CasterShape::Any, facts);
+    }
+
+    /// Removes all entries from `count` on.
+    pub fn truncate(&mut self, count: usize) {
+        if count < self.casts.len() {
+            self.casts.truncate(count);
+            self.receives.truncate(count);
+            self.shapes.truncate(count);
+            let gone = self.facts.drain(count..);
+            self.always_changing -= gone.filter(|facts| facts.revision.is_none()).count();
+            self.broken.split_off(&(count as u32));
+            self.content.fit += 1;
+            self.content.all += 1;
+        }
+    }
+
+    /// Makes the tree anew from all entries.
+    pub fn rebuild_tree(&mut self) {
+        if let Some(tree) = &mut self.tree {
+            let all = self.casts.iter().zip(&self.receives);
+            let all: Vec<Aabb> = all.map(|(casts, receives)| either(casts, receives)).collect();
+            tree.rebuild(&all);
+        }
+    }
+
+    fn write(
+        &mut self,
+        index: u32,
+        (casts, receives): (Aabb, Aabb),
+        shape: CasterShape,
+        facts: CasterFacts,
+    ) {
+        let at = index as usize;
+        self.always_changing += usize::from(facts.revision.is_none());
+        if at == self.casts.len() {
+            self.casts.push(casts);
+            self.receives.push(receives);
+            self.shapes.push(shape);
+            self.facts.push(facts);
+            self.content.fit += 1;
+            self.content.all += 1;
+            self.follow(index, &Aabb::EMPTY, &either(&casts, &receives));
+            return;
+        }
+        let changes_fit = self.casts[at] != casts
+            || self.receives[at] != receives
+            || self.shapes[at] != shape;
+        if changes_fit {
+            let before = either(&self.casts[at], &self.receives[at]);
+            self.casts[at] = casts;
+            self.receives[at] = receives;
+            self.shapes[at] = shape;
+            self.content.fit += 1;
+            self.content.all += 1;
+            self.follow(index, &before, &either(&casts, &receives));
+        }
+        self.always_changing -= usize::from(self.facts[at].revision.is_none());
+        if self.facts[at] != facts {
+            self.facts[at] = facts;
+            self.content.all += 1;
+        }
+    }
+
+    fn follow(&mut self, index: u32, before: &Aabb, bounds: &Aabb) {
+        if let Some(tree) = &mut self.tree {
+            tree.set(index, before, bounds);
+        }
+    }
+}
+
+/// Returns the bounds of a caster from those of its two roles, which are equal unless one is empty.
+fn either(casts: &Aabb, receives: &Aabb) -> Aabb {
+    if casts.is_empty() { *receives } else { *casts }
+}
