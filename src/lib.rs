@@ -248,7 +248,7 @@ mod receive;
 pub mod shader;
 
 pub use aabb::Aabb;
-pub use cast::{CasterPipeline, MeshCaster, Revision, ShadowCaster};
+pub use cast::{CasterPipeline, InstancedMeshCaster, MeshCaster, Revision, ShadowCaster};
 pub use error::ShadowError;
 pub use fit::{CameraView, CascadeLayout, CascadeSplit, ShadowView, Stability};
 pub use gpu::DepthFormat;
@@ -267,8 +267,9 @@ pub use {glam, wgpu};
 /// mesh.
 pub mod caster {
     pub use crate::cast::{
-        CasterPipelineDescriptor, CasterVertex, MeshCasterDescriptor, MeshIndices, ModelTransform,
-        PositionAttribute, caster_shape, is_closed_solid,
+        CasterInstances, CasterPipelineDescriptor, CasterVertex, InstancedMeshCasterDescriptor,
+        MeshCasterDescriptor, MeshIndices, ModelTransform, PositionAttribute, caster_shape,
+        is_closed_solid,
     };
     pub use crate::fit::CasterShape;
 }

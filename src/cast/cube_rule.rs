@@ -13,6 +13,7 @@
 
 use glam::Vec4;
 
+use crate::cast::draw_list::DrawCounter;
 use crate::cast::{FrameCasters, ViewDraws};
 use crate::gpu::FACE_COUNT;
 use crate::{Aabb, ShadowView};
@@ -31,13 +32,17 @@ pub(crate) fn one_pass_casters(
 ) -> Option<Vec<u32>> {
     // Each caster has one bit for each view that draws it.
     let mut drawn_by = vec![0u8; casters.len()];
+    let mut draws_in_passes = 0;
     for (view, draws) in views.iter().enumerate() {
+        let mut counter = DrawCounter::new();
         for &caster in &draws.casters {
             drawn_by[caster as usize] |= 1 << view;
+            counter.add(caster, casters);
         }
+        draws_in_passes += counter.draws();
     }
     let passes_saved = (views.len() as u64).saturating_sub(1);
-    let (mut draws_saved, mut triangles) = (0, 0);
+    let (mut counter, mut triangles) = (DrawCounter::new(), 0);
     let mut union = Vec::new();
     let all = casters.facts.iter().zip(casters.bounds).zip(drawn_by);
     for (index, ((facts, bounds), drawn_by)) in (0u32..).zip(all) {
@@ -53,10 +58,11 @@ pub(crate) fn one_pass_casters(
         if own_triangles == 0 || !facts.same_in_every_view || in_others(bounds) {
             return None;
         }
-        draws_saved += u64::from(drawn_by.count_ones()) - 1;
+        counter.add(index, casters);
         triangles += u64::from(FACE_COUNT) * own_triangles;
         union.push(index);
     }
+    let draws_saved = draws_in_passes.saturating_sub(counter.draws());
     let worth = TRIANGLES_PER_PASS * passes_saved + TRIANGLES_PER_DRAW * draws_saved;
     (triangles < worth).then_some(union)
 }

@@ -1,12 +1,15 @@
 //! Tracks what each layer of a map caches, which of its casters are static, and so what a frame
 //! must draw.
 
+use std::ops::Range;
+
 use crate::ShadowView;
+use crate::cast::draw_list::DrawCounter;
 use crate::cast::{FrameCasters, Revision};
 use crate::fit::ViewPlacement;
 
-/// Is one view of this frame with the casters that it needs, by ascending index into the engine's
-/// list.
+/// Is one view of this frame with the casters that it needs, by ascending index into the casters
+/// of the frame.
 #[derive(Debug)]
 pub(crate) struct ViewDraws {
     pub view: ShadowView,
@@ -20,6 +23,10 @@ pub(crate) struct ViewDraws {
     /// being drawn; the next field counts their triangles.
     pub copied: u32,
     pub copied_triangles: u64,
+    /// Is the range of the draw calls of its pass in the lists of the frame; the recorder sets it.
+    pub calls: Range<usize>,
+    /// Is the range of those that draw the static-caster cache.
+    pub static_calls: Range<usize>,
 }
 
 impl ViewDraws {
@@ -31,7 +38,14 @@ impl ViewDraws {
             plan: Plan::Keep,
             copied: 0,
             copied_triangles: 0,
+            calls: 0..0,
+            static_calls: 0..0,
         }
+    }
+
+    /// Returns the number of draw calls that the view takes, which is 0 for a view that is kept.
+    pub fn draw_calls(&self) -> u32 {
+        (self.calls.len() + self.static_calls.len()) as u32
     }
 }
 
@@ -179,6 +193,13 @@ impl LayerCache {
         casters.binary_search_by_key(&index, |c| c.index).is_ok()
     }
 
+    /// Returns the casters, by ascending index, that the static-caster cache will hold once `draws`
+    /// has renewed it.
+    pub fn static_after_renewal(&self, draws: &ViewDraws, casters: &FrameCasters<'_>) -> Vec<u32> {
+        let found = self.static_casters(draws, casters);
+        found.map(|drawn| drawn.index).collect()
+    }
+
     /// Updates the cache's state to what `draws` puts into the layer.
     pub fn replace(&mut self, draws: &ViewDraws, casters: &FrameCasters<'_>) {
         self.render_reach = self.render_reach_after(draws);
@@ -288,10 +309,11 @@ fn unchanged<'a>(
 
 /// Returns what drawing the casters costs, in copied texels.
 fn draw_cost_texels(drawn: impl Iterator<Item = Drawn>, casters: &FrameCasters<'_>) -> u64 {
-    drawn
-        .map(|drawn| {
-            let triangles = casters.facts(drawn.index).triangles;
-            TEXELS_PER_DRAW + TEXELS_PER_TRIANGLE * u64::from(triangles)
-        })
-        .sum()
+    let mut counter = DrawCounter::new();
+    let mut triangles = 0;
+    for Drawn { index, .. } in drawn {
+        counter.add(index, casters);
+        triangles += u64::from(casters.facts(index).triangles);
+    }
+    TEXELS_PER_DRAW * counter.draws() + TEXELS_PER_TRIANGLE * triangles
 }

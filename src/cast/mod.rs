@@ -2,7 +2,8 @@
 //! are sampled.
 //!
 //! ```text
-//! caster.rs              ShadowCaster and Revision: what the engine implements
+//! caster.rs              ShadowCaster: what the engine implements; revision.rs: its Revision
+//! instances.rs           CasterInstances: copies of a mesh, which batches are made of
 //! frame_casters.rs       the casters of a frame, each queried once
 //! pipeline_descriptor.rs how a kind of caster is laid out and shaded
 //! pipeline.rs            CasterPipeline: the pipelines made of it
@@ -10,11 +11,14 @@
 //! pipeline_reads.rs      what a vertex stage reads
 //! caster_limits.rs       what pipelines and passes need of a device's limits
 //! view_uniform.rs        the uniforms of a view in a vertex stage
-//! mesh.rs                MeshCaster: a ready-made caster; mesh_descriptor.rs, mesh_check.rs: its descriptor and checks
+//! mesh.rs                MeshCaster: a ready-made caster; instanced_mesh.rs: InstancedMeshCaster
+//! mesh_descriptor.rs     what they are made of; mesh_check.rs, mesh_geometry.rs: their checks and buffers
 //! closed.rs              which meshes are closed solids; mesh_shape.rs: which cannot shadow themselves
 //! layer_cache.rs         what a layer caches, and what a frame must draw
 //! recorder.rs            the passes; rect_clear.rs: how a part of a layer is cleared
-//! draw_casters.rs        the loop that draws casters in them
+//! draw_list.rs           the draw calls of the passes, one for all instances of equal geometry
+//! instance_matrices.rs   the matrices that these draw
+//! draw_casters.rs        the loop that makes the draw calls
 //! cube_pass.rs           six faces in one pass; cube_rule.rs: when that is cheaper than a pass for each
 //! ```
 
@@ -25,11 +29,16 @@ mod cube_pass;
 mod cube_pipeline;
 mod cube_rule;
 mod draw_casters;
+mod draw_list;
 mod frame_casters;
+mod instance_matrices;
+mod instanced_mesh;
+mod instances;
 mod layer_cache;
 mod mesh;
 mod mesh_check;
 mod mesh_descriptor;
+mod mesh_geometry;
 mod mesh_shape;
 mod pipeline;
 mod pipeline_build;
@@ -37,22 +46,26 @@ mod pipeline_descriptor;
 mod pipeline_reads;
 mod recorder;
 mod rect_clear;
+mod revision;
 mod view_uniform;
 
-pub use caster::{Revision, ShadowCaster};
+pub use caster::ShadowCaster;
 pub(crate) use caster_limits::caster_group;
 pub use closed::is_closed_solid;
 pub use frame_casters::BrokenBounds;
 pub(crate) use frame_casters::{CasterAnswers, FrameCasters, sound_bounds};
+pub use instanced_mesh::InstancedMeshCaster;
+pub use instances::CasterInstances;
 pub(crate) use layer_cache::{Plan, ViewDraws};
 pub use mesh::MeshCaster;
-pub use mesh_descriptor::{MeshCasterDescriptor, MeshIndices};
+pub use mesh_descriptor::{InstancedMeshCasterDescriptor, MeshCasterDescriptor, MeshIndices};
 pub use mesh_shape::caster_shape;
 pub use pipeline::CasterPipeline;
 pub use pipeline_descriptor::{
     CasterPipelineDescriptor, CasterVertex, ModelTransform, PositionAttribute,
 };
 pub(crate) use recorder::{Recorder, RecorderKind};
+pub use revision::Revision;
 pub(crate) use view_uniform::VIEW_UNIFORM_BYTES;
 
 /// Clears a map to the far plane (reversed depth): nothing casts.

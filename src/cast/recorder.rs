@@ -1,7 +1,9 @@
 //! Determines which views need drawing this frame, and records the passes that draw them.
 
 use crate::cast::cube_pass::{CubePass, PreparedCubePass};
-use crate::cast::draw_casters::{DrawnCaster, PassDefaults, draw_casters};
+use crate::cast::draw_casters::{DrawContext, PassDefaults, draw_casters};
+use crate::cast::draw_list::{DrawCall, DrawLists};
+use crate::cast::instance_matrices::{InstanceMatrices, PendingMatrices};
 use crate::cast::layer_cache::{LayerCache, Plan, ViewDraws};
 use crate::cast::rect_clear::rect_clear_pipeline;
 use crate::cast::view_uniform::{CasterViewUniform, VIEW_UNIFORM_BYTES, view_layout};
@@ -18,6 +20,9 @@ pub(crate) struct Recorder {
     stride: u64,
     bind_group: wgpu::BindGroup,
     layers: Vec<Layer>,
+    matrices: InstanceMatrices,
+    /// Holds nothing but memory between frames.
+    lists: DrawLists<'static>,
     /// Is false on wgpu's OpenGL backend, which copies no depth textures, and where views share a
     /// layer, since only whole layers of depth are copied; there all casters of a view are drawn
     /// again.
@@ -53,15 +58,17 @@ pub(crate) enum RecorderKind {
 pub(crate) struct PreparedViews<'a> {
     upload: Option<PendingUpload>,
     /// Replaces the pass for each view.
-    cube: Option<PreparedCubePass<'a>>,
-    /// Lists the pipelines of the casters of all views that are drawn, one view after the other.
-    pipelines: Vec<&'a CasterPipeline>,
+    cube: Option<PreparedCubePass>,
+    lists: DrawLists<'a>,
+    matrices: PendingMatrices,
 }
 
 impl PreparedViews<'_> {
     /// Returns whether anything was made on the device.
     pub fn uploads(&self) -> bool {
-        self.upload.is_some() || self.cube.as_ref().is_some_and(PreparedCubePass::uploads)
+        self.upload.is_some()
+            || !self.matrices.is_empty()
+            || self.cube.as_ref().is_some_and(PreparedCubePass::uploads)
     }
 }
 
@@ -117,6 +124,8 @@ impl Recorder {
             stride,
             bind_group,
             layers: layers.collect(),
+            matrices: InstanceMatrices::new(device, label),
+            lists: DrawLists::default(),
             // Depth is copied by whole layers alone.
             can_copy: device.adapter_info().backend != wgpu::Backend::Gl && rect_clear.is_none(),
             rect_clear,
@@ -139,10 +148,11 @@ impl Recorder {
         self.layers[view.index() as usize].cache.is_of(view)
     }
 
-    /// Returns the device memory, in bytes, of the static-caster caches.
+    /// Returns the device memory, in bytes, of the static-caster caches and of the matrices of
+    /// instances.
     pub fn bytes(&self) -> u64 {
         let caches = self.layers.iter().filter_map(|l| l.static_cache.as_ref());
-        caches.map(DepthMap::bytes).sum()
+        caches.map(DepthMap::bytes).sum::<u64>() + self.matrices.bytes_held()
     }
 
     /// Plans the frame for `map` and stages the uniforms of `views`. Each view is made to allow for
@@ -154,7 +164,33 @@ impl Recorder {
         views: &mut [ViewDraws],
         casters: &FrameCasters<'a>,
     ) -> Result<PreparedViews<'a>, ShadowError> {
-        let mut pipelines = Vec::new();
+        self.matrices.clear();
+        let mut lists = std::mem::take(&mut self.lists).recycled();
+        let prepared = self.prepare_lists(device, map, views, casters, &mut lists);
+        match prepared.and_then(|cube| self.stage(device, cube)) {
+            Ok((cube, upload, matrices)) => Ok(PreparedViews {
+                upload,
+                cube,
+                lists,
+                matrices,
+            }),
+            Err(error) => {
+                self.lists = lists.recycled();
+                Err(error)
+            }
+        }
+    }
+
+    /// Plans all views and lists their draw calls. Returns the pass that replaces those of the six
+    /// faces, if there is one.
+    fn prepare_lists<'a>(
+        &mut self,
+        device: &wgpu::Device,
+        map: &DepthMap,
+        views: &mut [ViewDraws],
+        casters: &FrameCasters<'a>,
+        lists: &mut DrawLists<'a>,
+    ) -> Result<Option<PreparedCubePass>, ShadowError> {
         self.bytes.clear();
         self.bytes
             .resize(self.stride as usize * self.layers.len(), 0);
@@ -163,15 +199,6 @@ impl Recorder {
             draws.plan = layer.cache.plan(draws, casters, self.can_copy);
             if draws.plan == Plan::RenewStaticCache && !layer.make_static_cache(device, map) {
                 draws.plan = Plan::All;
-            }
-            if draws.plan != Plan::Keep {
-                add_pipelines(
-                    &mut pipelines,
-                    device,
-                    map.format(),
-                    &draws.casters,
-                    casters,
-                )?;
             }
             let render_reach = layer.cache.render_reach_after(draws);
             draws.view = draws.view.over_depths_from(render_reach);
@@ -182,20 +209,68 @@ impl Recorder {
         }
         if let Some(cube) = &self.cube {
             if views.iter().all(|draws| draws.plan == Plan::All) {
-                if let Some(cube) = cube.prepare(device, views, casters)? {
-                    return Ok(PreparedViews {
-                        upload: None,
-                        cube: Some(cube),
-                        pipelines,
-                    });
+                let matrices = &mut self.matrices;
+                let prepared = cube.prepare(device, views, casters, lists, matrices)?;
+                if prepared.is_some() {
+                    return Ok(prepared);
                 }
+                lists.clear();
+                self.matrices.clear();
             }
         }
-        Ok(PreparedViews {
-            upload: self.uniforms.prepare(device, &self.bytes)?,
-            cube: None,
-            pipelines,
-        })
+        let (field, format) = (casters.field, map.format());
+        let check = |index: u32, pipeline: &CasterPipeline| {
+            let index = casters.listed_index(index);
+            if pipeline.device() != device {
+                return Err(ShadowError::CasterDevice { field, index });
+            }
+            if pipeline.wgpu_pipeline(format).is_none() {
+                return Err(ShadowError::CasterFormat {
+                    field,
+                    index,
+                    format,
+                });
+            }
+            Ok(())
+        };
+        for draws in views {
+            let cache = &self.layers[draws.view.index() as usize].cache;
+            let mut add = |drawn: &mut dyn Iterator<Item = u32>| {
+                lists.add(drawn, casters, &mut self.matrices, check)
+            };
+            let all = draws.casters.iter().copied();
+            let (static_calls, calls) = match draws.plan {
+                Plan::Keep => (0..0, 0..0),
+                Plan::All => (0..0, add(&mut all.clone())?),
+                Plan::OverStaticCache => {
+                    let mut moving = all.clone().filter(|&index| !cache.is_static(index));
+                    (0..0, add(&mut moving)?)
+                }
+                Plan::RenewStaticCache => {
+                    let found = cache.static_after_renewal(draws, casters);
+                    let is_static = |index: &u32| found.binary_search(index).is_ok();
+                    (
+                        add(&mut all.clone().filter(is_static))?,
+                        add(&mut all.clone().filter(|index| !is_static(index)))?,
+                    )
+                }
+            };
+            (draws.static_calls, draws.calls) = (static_calls, calls);
+        }
+        Ok(None)
+    }
+
+    /// Stages everything that the passes read.
+    fn stage(
+        &mut self,
+        device: &wgpu::Device,
+        cube: Option<PreparedCubePass>,
+    ) -> Result<Staged, ShadowError> {
+        let upload = match cube {
+            Some(_) => None,
+            None => self.uniforms.prepare(device, &self.bytes)?,
+        };
+        Ok((cube, upload, self.matrices.prepare(device)?))
     }
 
     /// Records what was planned and returns the number of passes.
@@ -210,29 +285,35 @@ impl Recorder {
         views: &mut [ViewDraws],
         casters: &FrameCasters<'_>,
     ) -> u32 {
-        if let (Some(cube), Some(prepared)) = (&mut self.cube, prepared.cube) {
+        let PreparedViews {
+            upload,
+            cube: prepared_cube,
+            lists,
+            matrices,
+        } = prepared;
+        self.matrices.commit(encoder, matrices);
+        if let (Some(cube), Some(prepared)) = (&mut self.cube, prepared_cube) {
             // The pass clears all layers, those of faces that nothing casts into as well.
             let mut caches: Vec<LayerCache> =
                 self.layers.iter_mut().map(Layer::take_cache).collect();
             for draws in views.iter() {
                 caches[draws.view.index() as usize].replace(draws, casters);
             }
-            cube.record(encoder, map, prepared, views, casters);
+            let frame = (casters, &self.matrices);
+            cube.record(encoder, map, prepared, views, &lists, frame);
+            self.lists = lists.recycled();
             for draws in views.iter() {
                 let index = draws.view.index() as usize;
                 self.layers[index].cache = std::mem::take(&mut caches[index]);
             }
             return 1;
         }
-        self.uniforms.commit(encoder, prepared.upload);
+        self.uniforms.commit(encoder, upload);
         let mut passes = 0;
-        let mut pipelines = prepared.pipelines.as_slice();
         for draws in views {
             if draws.plan == Plan::Keep {
                 continue;
             }
-            let (own_pipelines, others) = pipelines.split_at(draws.casters.len());
-            pipelines = others;
             let index = draws.view.index();
             let layer = &mut self.layers[index as usize];
             let mut cache = layer.take_cache();
@@ -243,28 +324,25 @@ impl Recorder {
                 view_group: (&self.bind_group, (self.stride * u64::from(index)) as u32),
                 format: map.format(),
                 rect_clear: self.rect_clear.as_ref(),
+                context: DrawContext {
+                    casters,
+                    matrices: &self.matrices,
+                    view: &draws.view,
+                },
             };
-            let all = draws.casters.iter().zip(own_pipelines);
-            let all = all.map(|(&index, &pipeline)| DrawnCaster { index, pipeline });
-            let (target, view) = (map.layer_view(draws.view.layer()), &draws.view);
+            let calls = lists.calls(draws.calls.clone());
+            let target = map.layer_view(draws.view.layer());
             passes += draws.plan.passes();
             match &layer.static_cache {
                 Some(static_cache) if draws.plan != Plan::All => {
-                    let is_static = |caster: &DrawnCaster<'_>| cache.is_static(caster.index);
-                    let static_casters = all.clone().filter(is_static);
                     if draws.plan == Plan::RenewStaticCache {
-                        pass.draw(
-                            static_cache.layer_view(0),
-                            CLEAR,
-                            view,
-                            static_casters,
-                            casters,
-                        );
+                        let calls = lists.calls(draws.static_calls.clone());
+                        pass.draw(static_cache.layer_view(0), CLEAR, calls);
                     } else {
-                        for caster in static_casters {
+                        let drawn = draws.casters.iter();
+                        for &caster in drawn.filter(|&&caster| cache.is_static(caster)) {
                             draws.copied += 1;
-                            draws.copied_triangles +=
-                                u64::from(casters.facts(caster.index).triangles);
+                            draws.copied_triangles += u64::from(casters.facts(caster).triangles);
                         }
                     }
                     pass.encoder.copy_texture_to_texture(
@@ -272,13 +350,13 @@ impl Recorder {
                         map.layer_copy(draws.view.layer()),
                         map.layer_extent(),
                     );
-                    let moving = all.filter(|caster| !is_static(caster));
-                    pass.draw(target, wgpu::LoadOp::Load, view, moving, casters);
+                    pass.draw(target, wgpu::LoadOp::Load, calls);
                 }
-                _ => pass.draw(target, CLEAR, view, all, casters),
+                _ => pass.draw(target, CLEAR, calls),
             }
             layer.cache = cache;
         }
+        self.lists = lists.recycled();
         passes
     }
 
@@ -314,24 +392,30 @@ impl Layer {
     }
 }
 
+/// Is the pass for six faces, and what is copied before the passes.
+type Staged = (
+    Option<PreparedCubePass>,
+    Option<PendingUpload>,
+    PendingMatrices,
+);
+
 /// Records passes over one layer.
-struct LayerPass<'a> {
+struct LayerPass<'a, 'c> {
     encoder: &'a mut wgpu::CommandEncoder,
     label: &'a str,
     view_group: (&'a wgpu::BindGroup, u32),
     format: DepthFormat,
     /// Clears the rectangle of a view that shares its layer with others.
     rect_clear: Option<&'a wgpu::RenderPipeline>,
+    context: DrawContext<'a, 'c>,
 }
 
-impl LayerPass<'_> {
-    fn draw<'c>(
+impl LayerPass<'_, '_> {
+    fn draw(
         &mut self,
         target: &wgpu::TextureView,
         load: wgpu::LoadOp<f32>,
-        view: &ShadowView,
-        drawn: impl Iterator<Item = DrawnCaster<'c>>,
-        casters: &FrameCasters<'_>,
+        calls: &[DrawCall<'_>],
     ) {
         // The texels of the other views in the layer are kept.
         let attachment_load = match self.rect_clear {
@@ -350,7 +434,7 @@ impl LayerPass<'_> {
         let defaults = PassDefaults {
             view_group: group,
             offsets: &[offset],
-            texels: view.texels(),
+            texels: self.context.view.texels(),
         };
         if let (Some(pipeline), wgpu::LoadOp::Clear(_)) = (self.rect_clear, load) {
             defaults.set_rect(&mut pass);
@@ -358,35 +442,9 @@ impl LayerPass<'_> {
             pass.draw(0..3, 0..1);
         }
         // The planning of the frame has checked that there is a pipeline for the format.
-        let of_format = |pipeline: &'c CasterPipeline| pipeline.wgpu_pipeline(self.format);
-        draw_casters(&mut pass, &defaults, view, drawn, casters, of_format);
+        let format = self.format;
+        draw_casters(&mut pass, &defaults, &self.context, calls, |pipeline| {
+            pipeline.wgpu_pipeline(format)
+        });
     }
-}
-
-/// Adds the pipelines of a view's casters to `pipelines`, each of which must have been made on
-/// `device` and for `format`.
-fn add_pipelines<'a>(
-    pipelines: &mut Vec<&'a CasterPipeline>,
-    device: &wgpu::Device,
-    format: DepthFormat,
-    drawn: &[u32],
-    casters: &FrameCasters<'a>,
-) -> Result<(), ShadowError> {
-    let field = casters.field;
-    for &index in drawn {
-        let pipeline = casters.caster(index).pipeline();
-        let index = index as usize;
-        if pipeline.device() != device {
-            return Err(ShadowError::CasterDevice { field, index });
-        }
-        if pipeline.wgpu_pipeline(format).is_none() {
-            return Err(ShadowError::CasterFormat {
-                field,
-                index,
-                format,
-            });
-        }
-        pipelines.push(pipeline);
-    }
-    Ok(())
 }

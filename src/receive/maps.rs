@@ -383,6 +383,7 @@ fn view_report(draws: &ViewDraws, casters: &FrameCasters<'_>) -> ViewReport {
         },
         casters: draws.casters.len() as u32,
         copied: draws.copied,
+        draws: draws.draw_calls(),
         culled: (casters.len() - draws.casters.len()) as u32,
         texel_size_world: draws.view.texel_size_world(),
         depth_range_world: draws.view.depth_range_world(),
