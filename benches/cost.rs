@@ -14,7 +14,7 @@ use shadow_support::clock::Clock;
 use shadow_support::gpu::{Gpu, GpuRequest};
 
 use growth::stage::Stage;
-use growth::{cpu, device, faces, motion};
+use growth::{copies, cpu, device, faces, motion};
 
 mod growth;
 
@@ -62,6 +62,8 @@ fn main() -> ExitCode {
     motion::moving_share(&stage);
     motion::static_cache(&stage);
     device::bare_minimum(&stage);
+    copies::beside_one_draw(&stage);
+    copies::yard(&stage);
     faces::in_one_pass(&stage);
     ExitCode::SUCCESS
 }

@@ -104,11 +104,6 @@ impl InstanceMatrices {
     pub fn buffer(&self, index: u32) -> &wgpu::Buffer {
         &self.buffers[index as usize]
     }
-
-    /// Returns the device memory of the buffers in bytes.
-    pub fn bytes_held(&self) -> u64 {
-        self.buffers.iter().map(wgpu::Buffer::size).sum()
-    }
 }
 
 fn vertex_buffer(

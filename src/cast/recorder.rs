@@ -148,11 +148,10 @@ impl Recorder {
         self.layers[view.index() as usize].cache.is_of(view)
     }
 
-    /// Returns the device memory, in bytes, of the static-caster caches and of the matrices of
-    /// instances.
+    /// Returns the device memory, in bytes, of the static-caster caches.
     pub fn bytes(&self) -> u64 {
         let caches = self.layers.iter().filter_map(|l| l.static_cache.as_ref());
-        caches.map(DepthMap::bytes).sum::<u64>() + self.matrices.bytes_held()
+        caches.map(DepthMap::bytes).sum()
     }
 
     /// Plans the frame for `map` and stages the uniforms of `views`. Each view is made to allow for

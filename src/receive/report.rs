@@ -104,8 +104,7 @@ pub struct ShadowReport {
     /// over the pixels of the images, for images of 720 rows and the default filter. It is estimated from bounds, so
     /// that it serves to compare layouts and scenes rather than as a promise. It is `None` for all other lights.
     pub predicted_error: Option<f32>,
-    /// Is the device memory, in bytes, of the depth texture, of the static-caster caches and of the
-    /// matrices of copies of meshes.
+    /// Is the device memory, in bytes, of the depth texture and of the static-caster caches.
     pub bytes_held: u64,
 }
 

@@ -37,7 +37,7 @@ const MEMBERS: [(&str, usize); 14] = [
     ("right", 3),
     ("down", 3),
     ("toward", 3),
-    ("middle", 2),
+    ("mapping.middle", 2),
     ("offset_texels", 1),
     ("offset_world", 1),
     ("lateral_error", 1),
