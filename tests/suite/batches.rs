@@ -221,6 +221,34 @@ fn batches_have_the_bits_of_single_draws() {
     }
 }
 
+/// Copies whose transform mirrors keep the faces that they would have as casters of their own: they
+/// take a call more, by the pipeline of the other winding.
+#[test]
+fn copies_that_are_mirrored() {
+    let gpu = gpu();
+    let descriptor = CasterPipelineDescriptor {
+        primitive: wgpu::PrimitiveState {
+            cull_mode: Some(wgpu::Face::Front),
+            ..Default::default()
+        },
+        ..Default::default()
+    };
+    let pipeline = CasterPipeline::new(&gpu.device, &descriptor).expect("a valid pipeline");
+    let boxes = Shared::new(gpu, &Mesh::cuboid(Vec3::splat(-0.5), Vec3::splat(0.5)));
+    let mut transforms = scattered(&mut Random::new(13), 40, 6.0);
+    for transform in transforms.iter_mut().step_by(3) {
+        *transform = reflected(*transform);
+    }
+    let copies = boxes.copies(gpu, &pipeline, &transforms);
+    let copies = list(&copies);
+    let alone = alone(&copies);
+    let instanced = boxes.instanced(gpu, &pipeline, &transforms);
+    let as_one = lamp(gpu, &[&instanced]);
+    as_one.assert_same(&lamp(gpu, &list(&alone)), "mirrored copies");
+    let drawn = as_one.layers.iter().flatten().count() as u32;
+    assert!((drawn + 1..=2 * drawn).contains(&as_one.report.draws()));
+}
+
 /// Some casters draw themselves among others that do not.
 #[test]
 fn batches_beside_casters_that_draw_themselves() {

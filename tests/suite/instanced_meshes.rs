@@ -94,7 +94,7 @@ fn kept_maps_of_copies_are_what_would_be_drawn() {
         .expect("a valid pipeline");
     let meshes = [
         Mesh::cuboid(Vec3::splat(-0.5), Vec3::splat(0.5)),
-        Mesh::sphere(Vec3::ZERO, 0.6, 24),
+        Mesh::sphere(Vec3::ZERO, 0.6, 6),
     ];
     let mut random = Random::new(40);
     let mut casters: Vec<_> = meshes
@@ -110,7 +110,7 @@ fn kept_maps_of_copies_are_what_would_be_drawn() {
     let mut eye = DVec3::new(0.0, 6.0, 14.0);
     let (mut kept_views, mut copied_views) = (0, 0);
     let mut movers = 1;
-    for frame_index in 0..600 {
+    for frame_index in 0..400 {
         let chance = random.unit();
         let which = random.index(2);
         let caster = &mut casters[which];
@@ -159,7 +159,7 @@ fn kept_maps_of_copies_are_what_would_be_drawn() {
         }
     }
     assert!(
-        kept_views > 60 && copied_views > 60,
+        kept_views > 40 && copied_views > 40,
         "{kept_views} kept, {copied_views} copied"
     );
 }

@@ -163,7 +163,7 @@ fn raw(receiver: ShadowReceiver) -> array<vec4<f32>, 2> {{
         );
         // What decides whether a view covers a position is compared where rounding does not decide.
         let middle = DVec2::from(member::<[f32; 2]>(view, "mapping.middle").map(f64::from));
-        let inner = DVec2::from(member::<[f32; 2]>(view, "inner").map(f64::from));
+        let inner = DVec2::from(member::<[f32; 2]>(view, "mapping.inner").map(f64::from));
         let margin = ((reference.texel - middle).abs() - inner)
             .abs()
             .min_element();
