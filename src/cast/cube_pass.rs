@@ -15,7 +15,7 @@ use crate::cast::{CasterPipeline, FrameCasters};
 use crate::error::DeviceError;
 use crate::fit::TexelRect;
 use crate::gpu::{
-    ALL_FACES_MASK, DepthMap, FACE_COUNT, PendingUpload, UploadBuffer, capture_device_errors,
+    ALL_FACES_MASK, DepthMap, FACE_COUNT, Upload, UploadBuffer, capture_device_errors,
     supports_cube_multiview,
 };
 
@@ -29,18 +29,11 @@ pub(crate) struct CubePass {
 
 /// Is one pass that is the cheaper way to draw, with everything made that could fail.
 pub(crate) struct PreparedCubePass {
-    upload: Option<PendingUpload>,
+    uniforms: [CasterViewUniform; FACE_COUNT as usize],
     /// Lists the casters of all faces.
     casters: Vec<u32>,
     /// Is the range of their draw calls in the lists of the frame.
     calls: Range<usize>,
-}
-
-impl PreparedCubePass {
-    /// Returns whether anything was made on the device.
-    pub fn uploads(&self) -> bool {
-        self.upload.is_some()
-    }
 }
 
 impl CubePass {
@@ -75,7 +68,7 @@ impl CubePass {
         }))
     }
 
-    /// Stages one pass for `views`, all of which are to be drawn whole. Returns `None` where a pass
+    /// Lists one pass for `views`, all of which are to be drawn whole. Returns `None` where a pass
     /// for each is cheaper, or where a caster cannot be drawn into six faces at once; `lists` and
     /// `matrices` then hold remains.
     pub fn prepare<'a>(
@@ -85,18 +78,14 @@ impl CubePass {
         casters: &FrameCasters<'a>,
         lists: &mut DrawLists<'a>,
         matrices: &mut InstanceMatrices,
-    ) -> Result<Option<PreparedCubePass>, ShadowError> {
-        let Some(union) = one_pass_casters(views, casters) else {
-            return Ok(None);
-        };
+    ) -> Option<PreparedCubePass> {
+        let union = one_pass_casters(views, casters)?;
         let drawn = union.iter().copied();
         let is_ready = |_, pipeline: &CasterPipeline| {
             let is_ready = pipeline.device() == device && pipeline.multiview_pipeline().is_some();
             is_ready.then_some(()).ok_or(())
         };
-        let Ok(calls) = lists.add(drawn, casters, matrices, is_ready) else {
-            return Ok(None);
-        };
+        let calls = lists.add(drawn, casters, matrices, is_ready).ok()?;
         // A face without a view stays empty: this matrix places every vertex at a depth beyond the
         // clip volume.
         let mut clipped_away = CasterViewUniform::zeroed();
@@ -105,13 +94,16 @@ impl CubePass {
         for draws in views {
             uniforms[draws.view.index() as usize] = CasterViewUniform::of(&draws.view);
         }
-        Ok(Some(PreparedCubePass {
-            upload: self
-                .faces
-                .prepare(device, bytemuck::cast_slice(&uniforms))?,
+        Some(PreparedCubePass {
+            uniforms,
             casters: union,
             calls,
-        }))
+        })
+    }
+
+    /// Returns the upload that the pass needs.
+    pub fn upload<'a>(&'a self, prepared: &'a PreparedCubePass) -> Option<Upload<'a>> {
+        self.faces.upload(bytemuck::cast_slice(&prepared.uniforms))
     }
 
     /// Draws into the six layers of `map` at once. Each view's list of casters becomes the list of
@@ -125,7 +117,8 @@ impl CubePass {
         lists: &DrawLists<'_>,
         (casters, matrices): (&FrameCasters<'_>, &InstanceMatrices),
     ) {
-        self.faces.commit(encoder, prepared.upload);
+        self.faces
+            .set_written(bytemuck::cast_slice(&prepared.uniforms));
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(&self.label),
             color_attachments: &[],

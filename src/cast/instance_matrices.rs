@@ -4,7 +4,7 @@ use glam::Mat4;
 
 use crate::cast::instances::append_matrix;
 use crate::error::{DeviceError, DeviceRefusal};
-use crate::gpu::{capture_device_errors, filled_buffer};
+use crate::gpu::{Upload, capture_device_errors};
 use crate::{ShadowError, cast::mesh_geometry::MeshGeometry};
 
 /// Tells where the matrix of an instance lies.
@@ -29,9 +29,6 @@ pub(crate) struct InstanceMatrices {
     starts: Vec<usize>,
     buffers: Vec<wgpu::Buffer>,
 }
-
-/// Holds one staging buffer for each part, made before anything is recorded.
-pub(crate) type PendingMatrices = Vec<wgpu::Buffer>;
 
 impl InstanceMatrices {
     pub fn new(device: &wgpu::Device, label: &str) -> Self {
@@ -70,13 +67,11 @@ impl InstanceMatrices {
         })
     }
 
-    /// Makes the buffers large enough and stages the matrices of the frame.
-    pub fn prepare(&mut self, device: &wgpu::Device) -> Result<PendingMatrices, ShadowError> {
-        let mut pending = Vec::new();
-        for (index, &start) in self.starts.iter().enumerate() {
-            let end = self.starts.get(index + 1).copied();
-            let bytes = &self.bytes[start..end.unwrap_or(self.bytes.len())];
-            let needed = bytes.len() as u64;
+    /// Makes the buffers large enough for the matrices of the frame. Buffers that are replaced stay
+    /// alive in the commands that were recorded with them.
+    pub fn prepare(&mut self, device: &wgpu::Device) -> Result<(), ShadowError> {
+        for index in 0..self.starts.len() {
+            let needed = self.part(index).len() as u64;
             if self
                 .buffers
                 .get(index)
@@ -87,17 +82,20 @@ impl InstanceMatrices {
                 self.buffers.truncate(index);
                 self.buffers.push(buffer);
             }
-            let usage = wgpu::BufferUsages::COPY_SRC;
-            pending.push(filled_buffer(device, &self.label, bytes, usage).map_err(refused)?);
         }
-        Ok(pending)
+        Ok(())
     }
 
-    /// Records the copies.
-    pub fn commit(&self, encoder: &mut wgpu::CommandEncoder, pending: PendingMatrices) {
-        for (staging, buffer) in pending.iter().zip(&self.buffers) {
-            encoder.copy_buffer_to_buffer(staging, 0, buffer, 0, staging.size());
-        }
+    /// Returns the uploads of the frame.
+    pub fn uploads(&self) -> impl Iterator<Item = Upload<'_>> {
+        let parts = (0..self.starts.len()).map(|index| self.part(index));
+        self.buffers.iter().zip(parts)
+    }
+
+    /// Returns the matrices in the buffer at `index`.
+    fn part(&self, index: usize) -> &[u8] {
+        let end = self.starts.get(index + 1).copied();
+        &self.bytes[self.starts[index]..end.unwrap_or(self.bytes.len())]
     }
 
     /// Returns the buffer at the index of an [`InstancePlace`].

@@ -3,13 +3,13 @@
 use crate::cast::cube_pass::{CubePass, PreparedCubePass};
 use crate::cast::draw_casters::{DrawContext, PassDefaults, draw_casters};
 use crate::cast::draw_list::{DrawCall, DrawLists};
-use crate::cast::instance_matrices::{InstanceMatrices, PendingMatrices};
+use crate::cast::instance_matrices::InstanceMatrices;
 use crate::cast::layer_cache::{LayerCache, Plan, ViewDraws};
 use crate::cast::rect_clear::rect_clear_pipeline;
 use crate::cast::view_uniform::{CasterViewUniform, VIEW_UNIFORM_BYTES, view_layout};
 use crate::cast::{CLEAR, CasterPipeline, FrameCasters};
 use crate::error::DeviceError;
-use crate::gpu::{DepthFormat, DepthMap, PendingUpload, UploadBuffer, capture_device_errors};
+use crate::gpu::{DepthFormat, DepthMap, Upload, UploadBuffer, capture_device_errors};
 use crate::{ShadowError, ShadowView};
 
 /// Draws views into the layers of a depth map, and tracks what each layer caches.
@@ -56,20 +56,9 @@ pub(crate) enum RecorderKind {
 
 /// Holds everything that could fail, made before the encoder is touched.
 pub(crate) struct PreparedViews<'a> {
-    upload: Option<PendingUpload>,
     /// Replaces the pass for each view.
     cube: Option<PreparedCubePass>,
     lists: DrawLists<'a>,
-    matrices: PendingMatrices,
-}
-
-impl PreparedViews<'_> {
-    /// Returns whether anything was made on the device.
-    pub fn uploads(&self) -> bool {
-        self.upload.is_some()
-            || !self.matrices.is_empty()
-            || self.cube.as_ref().is_some_and(PreparedCubePass::uploads)
-    }
 }
 
 impl Recorder {
@@ -154,7 +143,7 @@ impl Recorder {
         caches.map(DepthMap::bytes).sum()
     }
 
-    /// Plans the frame for `map` and stages the uniforms of `views`. Each view is made to allow for
+    /// Plans the frame for `map` and finds the uniforms of `views`. Each view is made to allow for
     /// the rounding of the depths that its layer will hold.
     pub fn prepare<'a>(
         &mut self,
@@ -165,19 +154,27 @@ impl Recorder {
     ) -> Result<PreparedViews<'a>, ShadowError> {
         self.matrices.clear();
         let mut lists = std::mem::take(&mut self.lists).recycled();
-        let prepared = self.prepare_lists(device, map, views, casters, &mut lists);
-        match prepared.and_then(|cube| self.stage(device, cube)) {
-            Ok((cube, upload, matrices)) => Ok(PreparedViews {
-                upload,
-                cube,
-                lists,
-                matrices,
-            }),
+        let cube = self.prepare_lists(device, map, views, casters, &mut lists);
+        match cube.and_then(|cube| self.matrices.prepare(device).map(|()| cube)) {
+            Ok(cube) => Ok(PreparedViews { cube, lists }),
             Err(error) => {
                 self.lists = lists.recycled();
                 Err(error)
             }
         }
+    }
+
+    /// Adds what must be copied before the passes.
+    pub fn add_uploads<'a>(
+        &'a self,
+        prepared: &'a PreparedViews<'_>,
+        uploads: &mut Vec<Upload<'a>>,
+    ) {
+        uploads.extend(match (&self.cube, &prepared.cube) {
+            (Some(cube), Some(prepared)) => cube.upload(prepared),
+            _ => self.uniforms.upload(&self.bytes),
+        });
+        uploads.extend(self.matrices.uploads());
     }
 
     /// Plans all views and lists their draw calls. Returns the pass that replaces those of the six
@@ -209,7 +206,7 @@ impl Recorder {
         if let Some(cube) = &self.cube {
             if views.iter().all(|draws| draws.plan == Plan::All) {
                 let matrices = &mut self.matrices;
-                let prepared = cube.prepare(device, views, casters, lists, matrices)?;
+                let prepared = cube.prepare(device, views, casters, lists, matrices);
                 if prepared.is_some() {
                     return Ok(prepared);
                 }
@@ -259,20 +256,7 @@ impl Recorder {
         Ok(None)
     }
 
-    /// Stages everything that the passes read.
-    fn stage(
-        &mut self,
-        device: &wgpu::Device,
-        cube: Option<PreparedCubePass>,
-    ) -> Result<Staged, ShadowError> {
-        let upload = match cube {
-            Some(_) => None,
-            None => self.uniforms.prepare(device, &self.bytes)?,
-        };
-        Ok((cube, upload, self.matrices.prepare(device)?))
-    }
-
-    /// Records what was planned and returns the number of passes.
+    /// Records what was planned, after the uploads, and returns the number of passes.
     ///
     /// The state of a layer is reset before anything is drawn into it and set again when its pass
     /// is complete: a caster that panics leaves a layer behind that the next frame draws again.
@@ -285,12 +269,9 @@ impl Recorder {
         casters: &FrameCasters<'_>,
     ) -> u32 {
         let PreparedViews {
-            upload,
             cube: prepared_cube,
             lists,
-            matrices,
         } = prepared;
-        self.matrices.commit(encoder, matrices);
         if let (Some(cube), Some(prepared)) = (&mut self.cube, prepared_cube) {
             // The pass clears all layers, those of faces that nothing casts into as well.
             let mut caches: Vec<LayerCache> =
@@ -307,7 +288,7 @@ impl Recorder {
             }
             return 1;
         }
-        self.uniforms.commit(encoder, upload);
+        self.uniforms.set_written(&self.bytes);
         let mut passes = 0;
         for draws in views {
             if draws.plan == Plan::Keep {
@@ -390,13 +371,6 @@ impl Layer {
         self.static_cache.is_some()
     }
 }
-
-/// Is the pass for six faces, and what is copied before the passes.
-type Staged = (
-    Option<PreparedCubePass>,
-    Option<PendingUpload>,
-    PendingMatrices,
-);
 
 /// Records passes over one layer.
 struct LayerPass<'a, 'c> {
