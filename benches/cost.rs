@@ -14,7 +14,7 @@ use shadow_support::clock::Clock;
 use shadow_support::gpu::{Gpu, GpuRequest};
 
 use growth::stage::Stage;
-use growth::{cpu, device, faces, motion, retained};
+use growth::{copies, cpu, device, faces, motion, retained};
 
 mod growth;
 
@@ -30,9 +30,10 @@ struct Arguments {
     /// Sets the texels per side of the largest map.
     #[arg(long, default_value_t = 8192)]
     map_size: u32,
-    /// Measures retained sets of casters and nothing else.
+    /// Measures the part of this name alone: retained, casters, culling, lights, cascades,
+    /// map-sizes, taps, moving-share, static-cache, bare-minimum, copies, yard or faces.
     #[arg(long)]
-    only_retained: bool,
+    only: Option<String>,
     /// Is passed by `cargo bench`.
     #[arg(long, hide = true)]
     bench: bool,
@@ -56,19 +57,27 @@ fn main() -> ExitCode {
         gpu: &gpu,
         repeats: arguments.repeats.max(1),
     };
-    retained::retained(&stage, arguments.casters);
-    if arguments.only_retained {
-        return ExitCode::SUCCESS;
+    let (casters, map_size) = (arguments.casters, arguments.map_size);
+    let parts: [(&str, &dyn Fn()); 13] = [
+        ("retained", &|| retained::retained(&stage, casters)),
+        ("casters", &|| cpu::casters(&stage, casters)),
+        ("culling", &|| cpu::culling(&stage, casters)),
+        ("lights", &|| cpu::lights(&stage)),
+        ("cascades", &|| device::cascades(&stage)),
+        ("map-sizes", &|| device::map_sizes(&stage, map_size)),
+        ("taps", &|| device::taps(&stage)),
+        ("moving-share", &|| motion::moving_share(&stage)),
+        ("static-cache", &|| motion::static_cache(&stage)),
+        ("bare-minimum", &|| device::bare_minimum(&stage)),
+        ("copies", &|| copies::beside_one_draw(&stage)),
+        ("yard", &|| copies::yard(&stage)),
+        ("faces", &|| faces::in_one_pass(&stage)),
+    ];
+    let only = arguments.only.as_deref();
+    for (name, measure) in parts {
+        if only.is_none_or(|only| only == name) {
+            measure();
+        }
     }
-    cpu::casters(&stage, arguments.casters);
-    cpu::culling(&stage, arguments.casters);
-    cpu::lights(&stage);
-    device::cascades(&stage);
-    device::map_sizes(&stage, arguments.map_size);
-    device::taps(&stage);
-    motion::moving_share(&stage);
-    motion::static_cache(&stage);
-    device::bare_minimum(&stage);
-    faces::in_one_pass(&stage);
     ExitCode::SUCCESS
 }

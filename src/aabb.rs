@@ -31,7 +31,7 @@ impl Aabb {
     }
 
     /// Is the result of every operation that a NaN enters; no further union makes it valid again.
-    const BROKEN: Self = Self {
+    pub(crate) const BROKEN: Self = Self {
         min: Vec3::NAN,
         max: Vec3::NAN,
     };

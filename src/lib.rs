@@ -273,7 +273,8 @@ pub mod shader;
 
 pub use aabb::Aabb;
 pub use cast::{
-    CasterId, CasterPipeline, CasterSet, Casters, MeshCaster, Revision, ShadowCaster,
+    CasterId, CasterPipeline, CasterSet, Casters, InstancedMeshCaster, MeshCaster, Revision,
+    ShadowCaster,
 };
 pub use error::ShadowError;
 pub use fit::{CameraView, CascadeLayout, CascadeSplit, ShadowView, Stability};
@@ -293,8 +294,9 @@ pub use {glam, wgpu};
 /// mesh.
 pub mod caster {
     pub use crate::cast::{
-        CasterPipelineDescriptor, CasterVertex, MeshCasterDescriptor, MeshIndices, ModelTransform,
-        PositionAttribute, RetainedCasters, caster_shape, is_closed_solid,
+        CasterInstances, CasterPipelineDescriptor, CasterVertex, InstancedMeshCasterDescriptor,
+        MeshCasterDescriptor, MeshIndices, ModelTransform, PositionAttribute, RetainedCasters,
+        caster_shape, is_closed_solid,
     };
     pub use crate::fit::CasterShape;
 }

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! cpu.rs        casters and lights: time and allocations on the CPU, and time on the device
+//! copies.rs     copies of one mesh beside one instanced draw; the draw calls of a yard
 //! device.rs     cascades, map sizes, taps, and the bare minimum: time on the device
 //! faces.rs      a point light's faces in one pass and in a pass each
 //! motion.rs     the share of casters that move, and what the static-caster cache saves
@@ -11,6 +12,7 @@
 //! processor.rs  time and allocations on the CPU
 //! ```
 
+pub mod copies;
 pub mod counts;
 pub mod cpu;
 pub mod crowd;

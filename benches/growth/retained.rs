@@ -132,7 +132,14 @@ pub fn retained(stage: &Stage<'_>, most: u32) {
 fn table(title: String) -> Growth {
     Growth::new(
         title,
-        &["moving ‰ (-1: camera)", "set µs", "allocs", "passes", "draws", "list µs"],
+        &[
+            "moving ‰ (-1: camera)",
+            "set µs",
+            "allocs",
+            "passes",
+            "draws",
+            "list µs",
+        ],
     )
 }
 
@@ -160,7 +167,11 @@ fn suns(stage: &Stage<'_>, count: u32) {
         let mut counts = (0, 0);
         for round in 0..SETTLING + stage.repeats {
             frame += 1;
-            let walked = if motion == Motion::Walk { 0.1 * frame as f32 } else { 0.0 };
+            let walked = if motion == Motion::Walk {
+                0.1 * frame as f32
+            } else {
+                0.0
+            };
             let eye = Vec3::new(walked, 2.0, 0.0);
             let camera = camera::looking(eye, eye + Vec3::new(9.0, -1.0, 5.0), 0.9);
             let cameras = [camera.with_max_distance(60.0)];
@@ -184,7 +195,9 @@ fn suns(stage: &Stage<'_>, count: u32) {
                 let members: Vec<&Mover> = ids.iter().filter_map(|id| set.get(*id)).collect();
                 let list: Vec<&dyn ShadowCaster> = members.iter().map(|m| *m as _).collect();
                 let record = |encoder: &mut wgpu::CommandEncoder| {
-                    of_list.record(encoder, &descriptor(Casters::List(&list))).passes
+                    of_list
+                        .record(encoder, &descriptor(Casters::List(&list)))
+                        .passes
                 };
                 processor::measure(1, || stage.gpu.encoder(), record)
             });
@@ -194,7 +207,10 @@ fn suns(stage: &Stage<'_>, count: u32) {
             }
         }
         let [set_times, list_times] = times;
-        let (effort, list) = (processor::median(&set_times), processor::median(&list_times));
+        let (effort, list) = (
+            processor::median(&set_times),
+            processor::median(&list_times),
+        );
         table.add(
             per_mille(motion),
             [
@@ -245,7 +261,10 @@ fn lamps(stage: &Stage<'_>) {
             }
         }
         let [set_times, list_times] = times;
-        let (effort, list) = (processor::median(&set_times), processor::median(&list_times));
+        let (effort, list) = (
+            processor::median(&set_times),
+            processor::median(&list_times),
+        );
         table.add(
             per_mille(motion),
             [
@@ -268,6 +287,7 @@ fn step(set: &mut CasterSet<Mover>, ids: &[CasterId], motion: Motion, frame: u32
     let stride = (1000 / share) as usize;
     // The same casters move in each frame.
     for &id in ids.iter().step_by(stride) {
-        set.update(id, |mover| mover.step(frame)).expect("a caster of the set");
+        set.update(id, |mover| mover.step(frame))
+            .expect("a caster of the set");
     }
 }

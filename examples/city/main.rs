@@ -9,7 +9,6 @@
 //! ```text
 //! town.rs          streets, blocks, houses and towers
 //! plot.rs          what stands on one block
-//! building.rs      a building as a caster
 //! flight.rs        the motion of the camera
 //! sun.rs           the sun's shadows, and the images that they are in
 //! density.rs       how many texels a pixel covers
@@ -18,7 +17,6 @@
 //! ../support       meshes and Blinn-Phong
 //! ```
 
-mod building;
 mod density;
 mod flight;
 mod plot;
@@ -64,9 +62,10 @@ fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
     let gpu = Gpu::new(&GpuRequest::default())?;
     picture::make_folder(&arguments.folder)?;
     let town = Town::new(&gpu.device)?;
-    let casters: Vec<&dyn ShadowCaster> = town.buildings.iter().map(|b| b as _).collect();
+    let casters: Vec<&dyn ShadowCaster> = town.casters.iter().map(|c| c as _).collect();
     let mut sun = Sun::new(&gpu)?;
-    println!("{} buildings cast", casters.len());
+    let count: usize = town.casters.iter().map(|caster| caster.len()).sum();
+    println!("{count} buildings cast");
 
     let save = |name: &str, pixels: &[u8], size| {
         let path = arguments.folder.join(name);

@@ -1,15 +1,17 @@
 //! Generates streets in a grid, blocks between them, and everything on them in one instance buffer.
 
+use std::ops::Range;
+
 use example_support::mesh::{Instance, Mesh, Vertex, cube, sphere, vertex_buffer};
 use example_support::phong::Batch;
-use glam::{Vec2, Vec3};
+use glam::{Mat4, Vec2, Vec3};
 use shadow_support::random::Random;
 use wgpu_shadows::{
-    Aabb, CasterPipeline, caster::CasterPipelineDescriptor, caster::CasterVertex,
+    Aabb, CasterPipeline, InstancedMeshCaster, caster::CasterPipelineDescriptor,
+    caster::CasterVertex, caster::InstancedMeshCasterDescriptor, caster::MeshIndices,
     caster::ModelTransform, caster::PositionAttribute, error::CasterError,
 };
 
-use crate::building::Building;
 use crate::plot::{self, BLOCK_SIDE, Part, Shape};
 
 /// Is the distance from the middle of one street to the middle of the next.
@@ -23,7 +25,8 @@ const KERB: f32 = 0.15;
 
 /// Holds the town. Streets run along x and z; one of each passes through the middle.
 pub struct Town {
-    pub buildings: Vec<Building>,
+    /// Holds all buildings: the boxes, and the domes.
+    pub casters: [InstancedMeshCaster; 2],
     /// Bounds what only receives: streets and pavements.
     pub ground: Aabb,
     box_mesh: Mesh,
@@ -63,25 +66,23 @@ impl Town {
         let box_mesh = Mesh::new(device, &cube());
         let dome_mesh = Mesh::new(device, &sphere(24));
         let pipeline = caster_pipeline(device)?;
-        let buildings = (0..)
-            .zip(&parts)
-            .skip(first_building as usize)
-            .map(|(index, part)| {
-                let mesh = match part.shape {
-                    Shape::Box => &box_mesh,
-                    Shape::Dome => &dome_mesh,
-                };
-                Building::new(mesh, &instances, index, &part.instance, &pipeline)
-            })
-            .collect();
+        let casters = |mesh, range: Range<u32>| {
+            let parts = &parts[range.start as usize..range.end as usize];
+            copies(device, &pipeline, mesh, parts)
+        };
+        let instance_count = parts.len() as u32;
+        let casters = [
+            casters(&box_mesh, first_building..first_dome)?,
+            casters(&dome_mesh, first_dome..instance_count)?,
+        ];
         Ok(Self {
-            buildings,
+            casters,
             ground: ground(),
             box_mesh,
             dome_mesh,
             instances,
             first_dome,
-            instance_count: parts.len() as u32,
+            instance_count,
         })
     }
 
@@ -115,8 +116,28 @@ fn street() -> Part {
     plot::upright(Vec2::ZERO, Vec2::splat(half), -1.0, 0.0, asphalt)
 }
 
-/// Creates a pipeline that reads the matrices where the scene's pass reads them: in the instance
-/// buffer.
+/// Makes one caster of many buildings, each of which is culled by itself.
+fn copies(
+    device: &wgpu::Device,
+    pipeline: &CasterPipeline,
+    mesh: &Mesh,
+    parts: &[Part],
+) -> Result<InstancedMeshCaster, CasterError> {
+    let transforms = parts.iter().map(|part| part.instance.render_from_model);
+    let transforms: Vec<Mat4> = transforms.collect();
+    let descriptor = InstancedMeshCasterDescriptor {
+        label: Some("buildings"),
+        pipeline,
+        vertices: &mesh.vertices,
+        indices: MeshIndices::None {
+            vertices: 0..mesh.vertex_count,
+        },
+        bounds_model: mesh.bounds_model,
+        render_from_model: &transforms,
+    };
+    InstancedMeshCaster::new(device, &descriptor)
+}
+
 fn caster_pipeline(device: &wgpu::Device) -> Result<CasterPipeline, CasterError> {
     CasterPipeline::new(
         device,
@@ -124,10 +145,7 @@ fn caster_pipeline(device: &wgpu::Device) -> Result<CasterPipeline, CasterError>
             label: Some("building"),
             vertex: CasterVertex::BuiltIn {
                 position: PositionAttribute::float32x3(size_of::<Vertex>() as u64),
-                model: ModelTransform::InstanceMatrix {
-                    array_stride: size_of::<Instance>() as u64,
-                    offset: 0,
-                },
+                model: ModelTransform::INSTANCE_MATRIX,
             },
             ..Default::default()
         },

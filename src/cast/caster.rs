@@ -1,61 +1,15 @@
 //! Defines what an engine implements for each object that casts shadows.
 
-use crate::cast::CasterPipeline;
+use crate::cast::{CasterInstances, CasterPipeline, Revision};
 use crate::fit::CasterShape;
 use crate::{Aabb, ShadowView};
-
-/// Identifies what a caster would draw and counts its versions, so that a map is kept while nothing
-/// in it changes.
-///
-/// Two frames share one depth render of a view if the view's casters have equal revisions, in
-/// whatever order, and its fit is unchanged. Whatever changes a pixel of the depth map must change the
-/// version: vertices, world transform, bones, alpha texture, pipeline. A move of the engine's
-/// `origin` alone needs no new version. A version that stays the same while the geometry changes
-/// leaves a stale shadow behind; a version that changes without need costs a depth pass.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Revision {
-    origin: Origin,
-    id: u64,
-    version: u64,
-}
-
-/// Tells who assigned the id of a revision, so that ids of different sources never collide.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-enum Origin {
-    Engine,
-    /// Marks the ids that [`MeshCaster`](crate::MeshCaster)s assign to themselves.
-    Mesh,
-}
-
-impl Revision {
-    /// Makes a revision from an `id`, which distinguishes this caster from all others of the light,
-    /// and a `version`, which counts its changes. Both may be any number. No
-    /// [`MeshCaster`](crate::MeshCaster) has the revision of an engine's own caster, whatever the
-    /// ids. Two casters that share an id and a version are taken for each other, and leave a stale
-    /// shadow where one replaces the other.
-    pub const fn new(id: u64, version: u64) -> Self {
-        Self {
-            origin: Origin::Engine,
-            id,
-            version,
-        }
-    }
-
-    /// Returns the revision of a [`MeshCaster`](crate::MeshCaster).
-    pub(crate) const fn of_mesh(id: u64, version: u64) -> Self {
-        Self {
-            origin: Origin::Mesh,
-            id,
-            version,
-        }
-    }
-}
 
 /// Draws an object that casts shadows into depth maps.
 ///
 /// [`ShadowScene::frame`](crate::ShadowScene::frame) calls every method but
 /// [`pipeline`](ShadowCaster::pipeline) and [`draw`](ShadowCaster::draw) once, for all lights of
-/// the frame. Those two are called for each pass that the caster takes part in.
+/// the frame. Those two are called for each pass that the caster takes part in. Within a pass
+/// casters are drawn in any order.
 pub trait ShadowCaster {
     /// Returns the bounds, in render space and world units, of everything that
     /// [`ShadowCaster::draw`] may draw, displacement included. The bounds are used to fit the maps
@@ -130,6 +84,21 @@ pub trait ShadowCaster {
         false
     }
 
+    /// Returns the copies of a mesh that the caster consists of, if a ready-made caster holds them:
+    /// for an engine's type that wraps a [`MeshCaster`](crate::MeshCaster) or an
+    /// [`InstancedMeshCaster`](crate::InstancedMeshCaster), what that one's method returns. Each
+    /// copy is then fitted, culled and kept by itself, and is drawn in one call with all others
+    /// that share its buffers. The default returns `None`, and every caster is drawn by a call of
+    /// [`ShadowCaster::draw`].
+    ///
+    /// Where it returns copies, [`casts`](ShadowCaster::casts) and
+    /// [`receives`](ShadowCaster::receives) hold for all of them, and no other method of the trait
+    /// is called: a wrapper that returns copies and overrides `bounds` or `draw` as well finds its
+    /// own without effect.
+    fn instances(&self) -> Option<CasterInstances<'_>> {
+        None
+    }
+
     /// Returns the number of triangles that [`ShadowCaster::draw`] draws into one view. It is used
     /// for the report's counts and to choose the cheaper way to draw; no image depends on it. The
     /// default returns 0, which means that the number is not known.
@@ -179,6 +148,10 @@ macro_rules! forward {
 
             fn same_in_every_view(&self) -> bool {
                 (**self).same_in_every_view()
+            }
+
+            fn instances(&self) -> Option<CasterInstances<'_>> {
+                (**self).instances()
             }
 
             fn triangles(&self) -> u32 {

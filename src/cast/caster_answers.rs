@@ -1,15 +1,25 @@
 //! Holds what the methods of casters returned, by the casters' indices.
 
 use std::collections::BTreeMap;
+use std::num::NonZeroU32;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::Aabb;
-use crate::cast::{Revision, ShadowCaster};
+use crate::cast::mesh_geometry::MeshGeometry;
+use crate::cast::{CasterInstances, Revision, ShadowCaster};
 use crate::fit::{BoundsTree, CasterShape};
 
-/// Holds what the methods of a caster returned, apart from its bounds.
+/// Holds what the methods of a caster returned, apart from its bounds, or what they say of one of
+/// its instances.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CasterFacts {
+    /// Is the index of the caster in the engine's list or set.
+    pub listed: u32,
+    /// Is the index among the instances of the caster; `None` for one that draws itself.
+    pub instance: Option<u32>,
+    /// Is equal for instances that are drawn in one call, and rarely equal for others; `None` for a
+    /// caster that draws itself.
+    pub batch: Option<NonZeroU32>,
     pub revision: Option<Revision>,
     pub triangles: u32,
     pub same_in_every_view: bool,
@@ -17,15 +27,20 @@ pub(crate) struct CasterFacts {
 }
 
 impl CasterFacts {
+    /// States what is known of no caster. The revision keeps it from counting as one that always
+    /// changes.
     const NOTHING: Self = Self {
-        revision: None,
+        listed: 0,
+        instance: None,
+        batch: None,
+        revision: Some(Revision::new(0, 0)),
         triangles: 0,
         same_in_every_view: true,
         keeps_pass_state: true,
     };
 }
 
-/// Is what the methods of one caster returned.
+/// Is what the methods of one caster returned, or what they say of one of its instances.
 pub(crate) struct CasterAnswer {
     bounds: Aabb,
     casts: bool,
@@ -35,21 +50,63 @@ pub(crate) struct CasterAnswer {
 }
 
 impl CasterAnswer {
-    /// Calls the methods of a caster.
-    pub fn of(caster: &(impl ShadowCaster + ?Sized)) -> Self {
-        Self {
-            bounds: caster.bounds(),
-            casts: caster.casts(),
-            receives: caster.receives(),
-            shape: caster.shape(),
-            facts: CasterFacts {
-                revision: caster.revision(),
-                triangles: caster.triangles(),
-                same_in_every_view: caster.same_in_every_view(),
-                keeps_pass_state: caster.keeps_pass_state(),
-            },
+    /// Calls the methods of a caster, and then `take` with the answer, or with one for each of its
+    /// instances. `listed` is the index of the caster in the engine's list or set.
+    pub fn each(caster: &(impl ShadowCaster + ?Sized), listed: u32, mut take: impl FnMut(Self)) {
+        let (casts, receives) = (caster.casts(), caster.receives());
+        let Some(instances) = caster.instances() else {
+            return take(Self {
+                bounds: caster.bounds(),
+                casts,
+                receives,
+                shape: caster.shape(),
+                facts: CasterFacts {
+                    listed,
+                    instance: None,
+                    batch: None,
+                    revision: caster.revision(),
+                    triangles: caster.triangles(),
+                    same_in_every_view: caster.same_in_every_view(),
+                    keeps_pass_state: caster.keeps_pass_state(),
+                },
+            });
+        };
+        let CasterInstances {
+            geometry,
+            shape_model,
+            instances,
+        } = instances;
+        let triangles = geometry.triangles();
+        let batches = [false, true].map(|mirrors| Some(batch_hash(geometry, mirrors)));
+        for (number, instance) in (0u32..).zip(instances) {
+            take(Self {
+                bounds: instance.bounds_render,
+                casts,
+                receives,
+                shape: match geometry.matrix_layout() {
+                    Some(_) => shape_model.transformed(&instance.render_from_model),
+                    None => shape_model,
+                },
+                facts: CasterFacts {
+                    listed,
+                    instance: Some(number),
+                    batch: batches[usize::from(instance.mirrors)],
+                    revision: Some(instance.revision),
+                    triangles,
+                    same_in_every_view: true,
+                    keeps_pass_state: true,
+                },
+            });
         }
     }
+}
+
+/// Returns a number that is equal for instances that one call draws, and rarely equal for others.
+fn batch_hash(geometry: &MeshGeometry, mirrors: bool) -> NonZeroU32 {
+    let pipeline = geometry.pipeline(mirrors).sort_key();
+    let mixed = (geometry.sort_key() ^ pipeline).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    // The upper bits of the product depend on all bits of the factors.
+    NonZeroU32::new((mixed >> 32) as u32).unwrap_or(NonZeroU32::MIN)
 }
 
 /// Identifies a state of some answers: two states with equal numbers are equal.
@@ -132,7 +189,12 @@ impl CasterAnswers {
         self.content.frame += 1;
     }
 
-    /// Sets the answer of the caster at `index`, which is at most the number of entries.
+    /// Returns the number of entries.
+    pub fn len(&self) -> usize {
+        self.facts.len()
+    }
+
+    /// Sets the answer at `index`, which is at most the number of entries.
     pub fn put(&mut self, index: u32, answer: &CasterAnswer) {
         let bounds = answer.bounds;
         if !self.broken.is_empty() {
@@ -142,7 +204,13 @@ impl CasterAnswers {
         if !is_sound {
             self.broken.insert(index, bounds);
         }
-        let role = |has_it: bool| if has_it && is_sound { bounds } else { Aabb::EMPTY };
+        let role = |has_it: bool| {
+            if has_it && is_sound {
+                bounds
+            } else {
+                Aabb::EMPTY
+            }
+        };
         self.write(
             index,
             (role(answer.casts), role(answer.receives)),
@@ -154,13 +222,8 @@ impl CasterAnswers {
     /// Makes the entry at `index` one of no caster.
     pub fn clear(&mut self, index: u32) {
         self.broken.remove(&index);
-        // A revision of its own keeps the entry from counting as always changing.
-        let facts = CasterFacts {
-            revision: Some(Revision::new(0, 0)),
-            ..CasterFacts::NOTHING
-        };
         let none = (Aabb::EMPTY, Aabb::EMPTY);
-        self.write(index, none, CasterShape::Any, facts);
+        self.write(index, none, CasterShape::Any, CasterFacts::NOTHING);
     }
 
     /// Removes all entries from `count` on.
@@ -181,7 +244,9 @@ impl CasterAnswers {
     pub fn rebuild_tree(&mut self) {
         if let Some(tree) = &mut self.tree {
             let all = self.casts.iter().zip(&self.receives);
-            let all: Vec<Aabb> = all.map(|(casts, receives)| either(casts, receives)).collect();
+            let all: Vec<Aabb> = all
+                .map(|(casts, receives)| either(casts, receives))
+                .collect();
             tree.rebuild(&all);
         }
     }
@@ -205,9 +270,8 @@ impl CasterAnswers {
             self.follow(index, &Aabb::EMPTY, &either(&casts, &receives));
             return;
         }
-        let changes_fit = self.casts[at] != casts
-            || self.receives[at] != receives
-            || self.shapes[at] != shape;
+        let changes_fit =
+            self.casts[at] != casts || self.receives[at] != receives || self.shapes[at] != shape;
         if changes_fit {
             let before = either(&self.casts[at], &self.receives[at]);
             self.casts[at] = casts;

@@ -49,12 +49,16 @@ mod sealed {
     use crate::cast::caster_answers::{CasterAnswers, Content};
 
     /// Is what a frame needs of a set.
-    #[expect(private_interfaces, reason = "the trait cannot be named outside the crate")]
+    #[expect(
+        private_interfaces,
+        reason = "the trait cannot be named outside the crate"
+    )]
     pub trait Retained {
         fn answers(&self) -> &CasterAnswers;
         /// Returns the number of the state of a frame that begins.
         fn content_of_frame(&self) -> Content;
         fn caster(&self, index: u32) -> &dyn ShadowCaster;
+        /// Returns the number of casters, where instances count one by one.
         fn count(&self) -> usize;
     }
 }
@@ -106,7 +110,10 @@ pub struct CasterSet<C> {
     slots: Vec<Option<Member<C>>>,
     /// Holds the indices of the slots that are empty.
     free: Vec<u32>,
+    /// Has one entry for each caster that draws itself, and for each instance of all others.
     answers: CasterAnswers,
+    /// Holds the indices of the entries that are not in use.
+    free_entries: Vec<u32>,
     /// Distinguishes the frames of a set in which some caster may always look different.
     frames: AtomicU64,
 }
@@ -115,6 +122,39 @@ pub struct CasterSet<C> {
 struct Member<C> {
     caster: C,
     ticket: u64,
+    entries: Entries,
+}
+
+/// Holds the indices of the answers of a caster. Most casters have one, which takes no memory of
+/// its own.
+#[derive(Debug, Default)]
+struct Entries {
+    first: Option<u32>,
+    others: Vec<u32>,
+}
+
+impl Entries {
+    fn get(&self, number: usize) -> Option<u32> {
+        match number.checked_sub(1) {
+            None => self.first,
+            Some(number) => self.others.get(number).copied(),
+        }
+    }
+
+    fn push(&mut self, entry: u32) {
+        match self.first {
+            None => self.first = Some(entry),
+            Some(_) => self.others.push(entry),
+        }
+    }
+
+    fn pop(&mut self) -> Option<u32> {
+        self.others.pop().or_else(|| self.first.take())
+    }
+
+    fn len(&self) -> usize {
+        usize::from(self.first.is_some()) + self.others.len()
+    }
 }
 
 static NEXT_TICKET: AtomicU64 = AtomicU64::new(0);
@@ -125,6 +165,7 @@ impl<C> Default for CasterSet<C> {
             slots: Vec::new(),
             free: Vec::new(),
             answers: CasterAnswers::new(true),
+            free_entries: Vec::new(),
             frames: AtomicU64::new(0),
         }
     }
@@ -142,9 +183,8 @@ impl<C: ShadowCaster> CasterSet<C> {
     /// Many casters at once are added faster, and found faster later, by
     /// [`insert_all`](Self::insert_all).
     pub fn insert(&mut self, caster: C) -> CasterId {
-        let answer = CasterAnswer::of(&caster);
         let id = self.place(caster);
-        self.answers.put(id.index, &answer);
+        self.ask(id.index);
         id
     }
 
@@ -169,17 +209,13 @@ impl<C: ShadowCaster> CasterSet<C> {
         id: CasterId,
         change: impl FnOnce(&mut C) -> R,
     ) -> Result<R, ShadowError> {
-        let unknown = ShadowError::UnknownCaster {
-            field: "id",
-            index: id.index,
-        };
-        let member = self.slots.get_mut(id.index as usize).and_then(Option::as_mut);
+        let member = self.slots.get_mut(id.index as usize);
+        let member = member.and_then(Option::as_mut);
         let Some(member) = member.filter(|member| member.ticket == id.ticket) else {
-            return Err(unknown);
+            return Err(unknown(id));
         };
         let result = change(&mut member.caster);
-        let answer = CasterAnswer::of(&member.caster);
-        self.answers.put(id.index, &answer);
+        self.ask(id.index);
         Ok(result)
     }
 
@@ -188,16 +224,17 @@ impl<C: ShadowCaster> CasterSet<C> {
     /// # Errors
     /// Returns [`ShadowError::UnknownCaster`] for a caster of another set or one that was removed.
     pub fn remove(&mut self, id: CasterId) -> Result<C, ShadowError> {
-        if self.get(id).is_none() {
-            return Err(ShadowError::UnknownCaster {
-                field: "id",
-                index: id.index,
-            });
+        let slot = self.slots.get_mut(id.index as usize);
+        let taken = slot.and_then(|slot| slot.take_if(|member| member.ticket == id.ticket));
+        let Some(mut member) = taken else {
+            return Err(unknown(id));
+        };
+        while let Some(entry) = member.entries.pop() {
+            self.answers.clear(entry);
+            self.free_entries.push(entry);
         }
-        self.answers.clear(id.index);
         self.free.push(id.index);
-        let member = self.slots[id.index as usize].take();
-        Ok(member.expect("the slot was found to be taken").caster)
+        Ok(member.caster)
     }
 
     /// Returns a caster, or `None` for one of another set or one that was removed.
@@ -225,10 +262,42 @@ impl<C: ShadowCaster> CasterSet<C> {
         self.len() == 0
     }
 
+    /// Calls the methods of the caster in a slot and keeps what they return.
+    fn ask(&mut self, index: u32) {
+        let Some(Member {
+            caster, entries, ..
+        }) = &mut self.slots[index as usize]
+        else {
+            return;
+        };
+        let (answers, free) = (&mut self.answers, &mut self.free_entries);
+        let mut count = 0;
+        CasterAnswer::each(caster, index, |answer| {
+            let entry = entries.get(count).unwrap_or_else(|| {
+                let entry = free.pop().unwrap_or(answers.len() as u32);
+                entries.push(entry);
+                entry
+            });
+            answers.put(entry, &answer);
+            count += 1;
+        });
+        while entries.len() > count {
+            let Some(entry) = entries.pop() else {
+                break;
+            };
+            answers.clear(entry);
+            free.push(entry);
+        }
+    }
+
     /// Puts a caster into an empty slot.
     fn place(&mut self, caster: C) -> CasterId {
         let ticket = NEXT_TICKET.fetch_add(1, Ordering::Relaxed);
-        let member = Some(Member { caster, ticket });
+        let member = Some(Member {
+            caster,
+            ticket,
+            entries: Entries::default(),
+        });
         let index = match self.free.pop() {
             Some(index) => {
                 self.slots[index as usize] = member;
@@ -243,9 +312,19 @@ impl<C: ShadowCaster> CasterSet<C> {
     }
 }
 
+fn unknown(id: CasterId) -> ShadowError {
+    ShadowError::UnknownCaster {
+        field: "id",
+        index: id.index,
+    }
+}
+
 impl<C: ShadowCaster> RetainedCasters for CasterSet<C> {}
 
-#[expect(private_interfaces, reason = "the trait cannot be named outside the crate")]
+#[expect(
+    private_interfaces,
+    reason = "the trait cannot be named outside the crate"
+)]
 impl<C: ShadowCaster> sealed::Retained for CasterSet<C> {
     fn answers(&self) -> &CasterAnswers {
         &self.answers
@@ -265,6 +344,6 @@ impl<C: ShadowCaster> sealed::Retained for CasterSet<C> {
     }
 
     fn count(&self) -> usize {
-        self.len()
+        self.answers.len() - self.free_entries.len()
     }
 }

@@ -1,17 +1,21 @@
 //! Draws the six faces of a cube in one multiview pass, on devices that support it.
 
+use std::ops::Range;
+
 use bytemuck::Zeroable;
 
 use crate::ShadowError;
 use crate::cast::cube_rule::one_pass_casters;
-use crate::cast::draw_casters::{DrawnCaster, PassDefaults, draw_casters};
+use crate::cast::draw_casters::{DrawContext, PassDefaults, draw_casters};
+use crate::cast::draw_list::DrawLists;
+use crate::cast::instance_matrices::InstanceMatrices;
 use crate::cast::layer_cache::ViewDraws;
 use crate::cast::view_uniform::{CasterViewUniform, VIEW_UNIFORM_BYTES, multiview_layout};
 use crate::cast::{CasterPipeline, FrameCasters};
 use crate::error::DeviceError;
 use crate::fit::TexelRect;
 use crate::gpu::{
-    ALL_FACES_MASK, DepthMap, FACE_COUNT, PendingUpload, UploadBuffer, capture_device_errors,
+    ALL_FACES_MASK, DepthMap, FACE_COUNT, Upload, UploadBuffer, capture_device_errors,
     supports_cube_multiview,
 };
 
@@ -24,17 +28,12 @@ pub(crate) struct CubePass {
 }
 
 /// Is one pass that is the cheaper way to draw, with everything made that could fail.
-pub(crate) struct PreparedCubePass<'a> {
-    upload: Option<PendingUpload>,
+pub(crate) struct PreparedCubePass {
+    uniforms: [CasterViewUniform; FACE_COUNT as usize],
     /// Lists the casters of all faces.
-    casters: Vec<DrawnCaster<'a>>,
-}
-
-impl PreparedCubePass<'_> {
-    /// Returns whether anything was made on the device.
-    pub fn uploads(&self) -> bool {
-        self.upload.is_some()
-    }
+    casters: Vec<u32>,
+    /// Is the range of their draw calls in the lists of the frame.
+    calls: Range<usize>,
 }
 
 impl CubePass {
@@ -69,25 +68,24 @@ impl CubePass {
         }))
     }
 
-    /// Stages one pass for `views`, all of which are to be drawn whole. Returns `None` where a pass
-    /// for each is cheaper, or where a caster cannot be drawn into six faces at once.
+    /// Lists one pass for `views`, all of which are to be drawn whole. Returns `None` where a pass
+    /// for each is cheaper, or where a caster cannot be drawn into six faces at once; `lists` and
+    /// `matrices` then hold remains.
     pub fn prepare<'a>(
         &self,
         device: &wgpu::Device,
         views: &[ViewDraws],
         casters: &FrameCasters<'a>,
-    ) -> Result<Option<PreparedCubePass<'a>>, ShadowError> {
-        let Some(union) = one_pass_casters(views, casters) else {
-            return Ok(None);
-        };
-        let drawn = union.into_iter().map(|index| {
-            let pipeline = casters.caster(index).pipeline();
+        lists: &mut DrawLists<'a>,
+        matrices: &mut InstanceMatrices,
+    ) -> Option<PreparedCubePass> {
+        let union = one_pass_casters(views, casters)?;
+        let drawn = union.iter().copied();
+        let is_ready = |_, pipeline: &CasterPipeline| {
             let is_ready = pipeline.device() == device && pipeline.multiview_pipeline().is_some();
-            is_ready.then_some(DrawnCaster { index, pipeline })
-        });
-        let Some(drawn) = drawn.collect() else {
-            return Ok(None);
+            is_ready.then_some(()).ok_or(())
         };
+        let calls = lists.add(drawn, casters, matrices, is_ready).ok()?;
         // A face without a view stays empty: this matrix places every vertex at a depth beyond the
         // clip volume.
         let mut clipped_away = CasterViewUniform::zeroed();
@@ -96,12 +94,16 @@ impl CubePass {
         for draws in views {
             uniforms[draws.view.index() as usize] = CasterViewUniform::of(&draws.view);
         }
-        Ok(Some(PreparedCubePass {
-            upload: self
-                .faces
-                .prepare(device, bytemuck::cast_slice(&uniforms))?,
-            casters: drawn,
-        }))
+        Some(PreparedCubePass {
+            uniforms,
+            casters: union,
+            calls,
+        })
+    }
+
+    /// Returns the upload that the pass needs.
+    pub fn upload<'a>(&'a self, prepared: &'a PreparedCubePass) -> Option<Upload<'a>> {
+        self.faces.upload(bytemuck::cast_slice(&prepared.uniforms))
     }
 
     /// Draws into the six layers of `map` at once. Each view's list of casters becomes the list of
@@ -110,11 +112,13 @@ impl CubePass {
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         map: &DepthMap,
-        prepared: PreparedCubePass<'_>,
+        prepared: PreparedCubePass,
         views: &mut [ViewDraws],
-        casters: &FrameCasters<'_>,
+        lists: &DrawLists<'_>,
+        (casters, matrices): (&FrameCasters<'_>, &InstanceMatrices),
     ) {
-        self.faces.commit(encoder, prepared.upload);
+        self.faces
+            .set_written(bytemuck::cast_slice(&prepared.uniforms));
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(&self.label),
             color_attachments: &[],
@@ -128,19 +132,22 @@ impl CubePass {
             offsets: &[],
             texels: TexelRect::whole(map.size()),
         };
-        let drawn = prepared.casters.iter().copied();
+        let context = DrawContext {
+            casters,
+            matrices,
+            view: &views[0].view,
+        };
         draw_casters(
             &mut pass,
             &defaults,
-            &views[0].view,
-            drawn,
-            casters,
+            &context,
+            lists.calls(prepared.calls.clone()),
             CasterPipeline::multiview_pipeline,
         );
         for draws in views {
             draws.casters.clear();
-            let drawn = prepared.casters.iter().map(|caster| caster.index);
-            draws.casters.extend(drawn);
+            draws.casters.extend_from_slice(&prepared.casters);
+            draws.calls = prepared.calls.clone();
         }
     }
 

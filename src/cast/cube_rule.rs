@@ -13,6 +13,7 @@
 
 use glam::Vec4;
 
+use crate::cast::draw_list::DrawCounter;
 use crate::cast::{FrameCasters, ViewDraws};
 use crate::gpu::FACE_COUNT;
 use crate::{Aabb, ShadowView};
@@ -44,9 +45,16 @@ pub(crate) fn one_pass_casters(
         }
         same
     });
+    let draws_in_passes = views.iter().map(|draws| {
+        let mut counter = DrawCounter::new();
+        for &caster in &draws.casters {
+            counter.add(casters.facts(caster).batch);
+        }
+        counter.draws()
+    });
     let boxes = casters.casting();
     let passes_saved = (views.len() as u64).saturating_sub(1);
-    let (mut draws_saved, mut triangles) = (0, 0);
+    let (mut counter, mut triangles) = (DrawCounter::new(), 0);
     let mut union = Vec::with_capacity(drawn.len());
     for (index, drawn_by) in drawn {
         let (facts, bounds) = (casters.facts(index), boxes.at(index));
@@ -59,10 +67,11 @@ pub(crate) fn one_pass_casters(
         if own_triangles == 0 || !facts.same_in_every_view || in_others(bounds) {
             return None;
         }
-        draws_saved += u64::from(drawn_by.count_ones()) - 1;
+        counter.add(facts.batch);
         triangles += u64::from(FACE_COUNT) * own_triangles;
         union.push(index);
     }
+    let draws_saved = draws_in_passes.sum::<u64>().saturating_sub(counter.draws());
     let worth = TRIANGLES_PER_PASS * passes_saved + TRIANGLES_PER_DRAW * draws_saved;
     (triangles < worth).then_some(union)
 }

@@ -1,16 +1,11 @@
-//! Contains the loop that draws casters in every kind of depth pass.
+//! Contains the loop that makes the draw calls of every kind of depth pass.
 
 use crate::ShadowView;
+use crate::cast::draw_list::DrawCall;
+use crate::cast::instance_matrices::InstanceMatrices;
+use crate::cast::mesh_geometry::MeshGeometry;
 use crate::cast::{CasterPipeline, FrameCasters};
 use crate::fit::TexelRect;
-
-/// Is a caster that a pass draws.
-#[derive(Clone, Copy)]
-pub(crate) struct DrawnCaster<'a> {
-    /// Is its index in the engine's list.
-    pub index: u32,
-    pub pipeline: &'a CasterPipeline,
-}
 
 /// Holds the state of a pass that casters rely on and may change.
 pub(crate) struct PassDefaults<'a> {
@@ -41,34 +36,83 @@ impl PassDefaults<'_> {
     }
 }
 
-/// Draws casters one after the other. Each caster finds its pipeline, bind group 0, the view's
-/// rectangle as viewport and scissor rectangle, and depths from 0 to 1, whatever the caster before
-/// it has set. They are set again only after a caster that may have changed them: in software,
-/// setting bind group and scissor rectangle costs several times what a small draw costs. `variant`
-/// returns the one of a caster's pipelines that matches the pass; a caster for which it returns
-/// `None` is left out.
+/// Is what the draw calls of a pass need besides themselves.
+pub(crate) struct DrawContext<'a, 'c> {
+    pub casters: &'a FrameCasters<'c>,
+    pub matrices: &'a InstanceMatrices,
+    pub view: &'a ShadowView,
+}
+
+/// Holds what a pass has set, so that nothing is set twice. A caster of the engine's own may have
+/// changed all of it.
+#[derive(Default)]
+struct Bound<'a> {
+    pipeline: Option<&'a CasterPipeline>,
+    geometry: Option<&'a MeshGeometry>,
+    matrices: Option<u32>,
+}
+
+/// Makes draw calls one after the other. Each caster of the engine's own finds its pipeline, bind
+/// group 0, the view's rectangle as viewport and scissor rectangle, and depths from 0 to 1, whatever
+/// the caster before it has set. They are set again only after a caster that may have changed them:
+/// in software, setting bind group and scissor rectangle costs several times what a small draw
+/// costs. `variant` returns the one of a caster's pipelines that matches the pass; a call for which
+/// it returns `None` is left out.
 pub(crate) fn draw_casters<'c>(
     pass: &mut wgpu::RenderPass<'_>,
     defaults: &PassDefaults<'_>,
-    view: &ShadowView,
-    drawn: impl Iterator<Item = DrawnCaster<'c>>,
-    casters: &FrameCasters<'_>,
+    context: &DrawContext<'_, '_>,
+    calls: &[DrawCall<'c>],
     variant: impl Fn(&'c CasterPipeline) -> Option<&'c wgpu::RenderPipeline>,
 ) {
     defaults.set_group(pass);
-    let mut current: Option<&CasterPipeline> = None;
-    for DrawnCaster { index, pipeline } in drawn {
-        if current != Some(pipeline) {
+    let mut bound = Bound::default();
+    for call in calls {
+        let pipeline = call.pipeline();
+        if !bound
+            .pipeline
+            .is_some_and(|bound| bound.draws_like(pipeline))
+        {
             let Some(variant) = variant(pipeline) else {
                 continue;
             };
             pass.set_pipeline(variant);
-            current = Some(pipeline);
+            bound.pipeline = Some(pipeline);
         }
-        casters.caster(index).draw(pass, view);
-        if !casters.facts(index).keeps_pass_state {
-            defaults.restore(pass);
-            current = None;
+        match *call {
+            DrawCall::Caster { index, .. } => {
+                let facts = context.casters.facts(index);
+                context.casters.caster(index).draw(pass, context.view);
+                if facts.keeps_pass_state && facts.instance.is_none() {
+                    (bound.geometry, bound.matrices) = (None, None);
+                } else {
+                    defaults.restore(pass);
+                    bound = Bound::default();
+                }
+            }
+            DrawCall::Instances {
+                geometry,
+                first,
+                count,
+                ..
+            } => {
+                if !bound
+                    .geometry
+                    .is_some_and(|bound| bound.shares_buffers(geometry))
+                {
+                    geometry.bind(pass);
+                    bound.geometry = Some(geometry);
+                }
+                let first = first.map_or(0, |first| {
+                    if bound.matrices != Some(first.buffer) {
+                        let buffer = context.matrices.buffer(first.buffer);
+                        pass.set_vertex_buffer(1, buffer.slice(..));
+                        bound.matrices = Some(first.buffer);
+                    }
+                    first.instance
+                });
+                geometry.draw(pass, first..first + count);
+            }
         }
     }
 }

@@ -2,7 +2,9 @@
 
 use crate::Aabb;
 use crate::cast::caster_answers::{CasterAnswer, CasterAnswers, CasterFacts, Content};
-use crate::cast::{Casters, ShadowCaster};
+use crate::cast::instances::Instance;
+use crate::cast::mesh_geometry::MeshGeometry;
+use crate::cast::{CasterInstances, Casters, ShadowCaster};
 use crate::fit::{Boxes, CasterShape};
 
 /// Names bounds of a frame that have a NaN or an infinite corner and are not empty. The object that
@@ -17,6 +19,10 @@ pub struct BrokenBounds {
     /// Is the index in the list, or what [`CasterId::index`](crate::CasterId::index) returns for a
     /// caster of a set.
     pub index: usize,
+    /// Is the index of the instance where the caster consists of instances
+    /// ([`ShadowCaster::instances`]). Its matrix is not finite, or takes the bounds of the mesh to
+    /// infinity. The other instances of the caster keep their shadows.
+    pub instance: Option<usize>,
     /// Is the value that was given.
     pub bounds: Aabb,
 }
@@ -34,14 +40,18 @@ pub(crate) fn sound_bounds(
     broken.push(BrokenBounds {
         field,
         index,
+        instance: None,
         bounds,
     });
     Aabb::EMPTY
 }
 
-/// Holds the casters of a frame. Each of their methods but `pipeline` and `draw` is called once a
-/// frame, or once for each change of a caster in a set. All views use the values returned, so that
-/// a caster whose values change in between cannot contradict itself.
+/// Holds the casters of a frame. Each of their methods but `pipeline`, `instances` and `draw` is
+/// called once a frame, or once for each change of a caster in a set. All views use the values
+/// returned, so that a caster whose values change in between cannot contradict itself.
+///
+/// A caster that consists of instances counts as many casters, one for each instance: wherever else
+/// a caster is told by an index, the index is one into these lists.
 #[derive(Clone, Copy)]
 pub(crate) struct FrameCasters<'a> {
     casters: Casters<'a>,
@@ -64,10 +74,14 @@ impl<'a> FrameCasters<'a> {
     ) -> Self {
         let (answers, content) = match casters {
             Casters::List(list) => {
-                for (index, caster) in (0u32..).zip(list) {
-                    listed.put(index, &CasterAnswer::of(*caster));
+                let mut count = 0;
+                for (listed_index, caster) in (0u32..).zip(list) {
+                    CasterAnswer::each(*caster, listed_index, |answer| {
+                        listed.put(count, &answer);
+                        count += 1;
+                    });
                 }
-                listed.truncate(list.len());
+                listed.truncate(count as usize);
                 if listed.always_changing > 0 {
                     listed.count_frame();
                 }
@@ -75,10 +89,16 @@ impl<'a> FrameCasters<'a> {
             }
             Casters::Set(set) => (set.answers(), set.content_of_frame()),
         };
-        broken.extend(answers.broken.iter().map(|(index, bounds)| BrokenBounds {
-            field,
-            index: *index as usize,
-            bounds: *bounds,
+        broken.extend(answers.broken.iter().map(|(&index, &bounds)| {
+            let CasterFacts {
+                listed, instance, ..
+            } = answers.facts[index as usize];
+            BrokenBounds {
+                field,
+                index: listed as usize,
+                instance: instance.map(|instance| instance as usize),
+                bounds,
+            }
         }));
         Self {
             casters,
@@ -89,12 +109,30 @@ impl<'a> FrameCasters<'a> {
         }
     }
 
-    /// Returns the caster at `index` of the engine's list or set.
+    /// Returns the caster at `index`, or the one that the instance at `index` belongs to.
     pub fn caster(&self, index: u32) -> &'a dyn ShadowCaster {
+        let listed = self.facts(index).listed;
         match self.casters {
-            Casters::List(list) => list[index as usize],
-            Casters::Set(set) => set.caster(index),
+            Casters::List(list) => list[listed as usize],
+            Casters::Set(set) => set.caster(listed),
         }
+    }
+
+    /// Returns the instance at `index` with its geometry. Returns `None` for a caster that draws
+    /// itself, and for one that no longer has the instance that it had when it was asked.
+    pub fn instance(&self, index: u32) -> Option<(&'a MeshGeometry, &'a Instance)> {
+        let instance = self.facts(index).instance?;
+        let CasterInstances {
+            geometry,
+            instances,
+            ..
+        } = self.caster(index).instances()?;
+        Some((geometry, instances.get(instance as usize)?))
+    }
+
+    /// Returns the index in the engine's list or set of the caster at `index`.
+    pub fn listed_index(&self, index: u32) -> usize {
+        self.facts(index).listed as usize
     }
 
     /// Returns what the methods of the caster at `index` returned.
@@ -102,10 +140,10 @@ impl<'a> FrameCasters<'a> {
         &self.answers.facts[index as usize]
     }
 
-    /// Returns the number of casters.
+    /// Returns the number of casters, where instances count one by one.
     pub fn len(&self) -> usize {
         match self.casters {
-            Casters::List(list) => list.len(),
+            Casters::List(_) => self.answers.facts.len(),
             Casters::Set(set) => set.count(),
         }
     }

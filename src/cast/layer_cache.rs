@@ -1,12 +1,16 @@
 //! Tracks what each layer of a map caches, which of its casters are static, and so what a frame
 //! must draw.
 
+use std::num::NonZeroU32;
+use std::ops::Range;
+
 use crate::ShadowView;
+use crate::cast::draw_list::DrawCounter;
 use crate::cast::{FrameCasters, Revision};
 use crate::fit::ViewPlacement;
 
-/// Is one view of this frame with the casters that it needs, by their indices in the engine's list
-/// or set.
+/// Is one view of this frame with the casters that it needs, by their indices among the casters of
+/// the frame.
 #[derive(Debug)]
 pub(crate) struct ViewDraws {
     pub view: ShadowView,
@@ -20,6 +24,10 @@ pub(crate) struct ViewDraws {
     /// being drawn; the next field counts their triangles.
     pub copied: u32,
     pub copied_triangles: u64,
+    /// Is the range of the draw calls of its pass in the lists of the frame; the recorder sets it.
+    pub calls: Range<usize>,
+    /// Is the range of those that draw the static-caster cache.
+    pub static_calls: Range<usize>,
 }
 
 impl ViewDraws {
@@ -31,7 +39,14 @@ impl ViewDraws {
             plan: Plan::Keep,
             copied: 0,
             copied_triangles: 0,
+            calls: 0..0,
+            static_calls: 0..0,
         }
+    }
+
+    /// Returns the number of draw calls that the view takes, which is 0 for a view that is kept.
+    pub fn draw_calls(&self) -> u32 {
+        (self.calls.len() + self.static_calls.len()) as u32
     }
 }
 
@@ -67,6 +82,8 @@ struct Drawn {
     revision: Option<Revision>,
     /// Is the number of its triangles, as it was reported.
     triangles: u32,
+    /// Is equal for those that are drawn in one call.
+    batch: Option<NonZeroU32>,
     /// Counts the draws for which it had not changed.
     age: u32,
 }
@@ -151,7 +168,10 @@ impl LayerCache {
     fn holds(&self, draws: &ViewDraws, now: &[Drawn]) -> bool {
         self.is_kept_view(draws)
             && self.drawn.len() == now.len()
-            && now.iter().zip(&self.drawn).all(|(now, was)| now.is_same(was))
+            && now
+                .iter()
+                .zip(&self.drawn)
+                .all(|(now, was)| now.is_same(was))
     }
 
     /// Returns what `draws` needs. `can_copy` is false where layers cannot be copied.
@@ -202,7 +222,10 @@ impl LayerCache {
     /// Returns whether the static-caster cache holds a caster of this revision.
     pub fn is_static(&self, revision: Option<Revision>) -> bool {
         let casters = &self.static_cache.casters;
-        revision.is_some() && casters.binary_search_by_key(&revision, |c| c.revision).is_ok()
+        revision.is_some()
+            && casters
+                .binary_search_by_key(&revision, |c| c.revision)
+                .is_ok()
     }
 
     /// Takes note of the order of the casters of a view that is kept.
@@ -214,8 +237,23 @@ impl LayerCache {
 
     fn note_order(&mut self, draws: &ViewDraws, casters: &FrameCasters<'_>) {
         self.in_order.clear();
-        let revisions = draws.casters.iter().map(|&index| casters.facts(index).revision);
+        let revisions = draws
+            .casters
+            .iter()
+            .map(|&index| casters.facts(index).revision);
         self.in_order.extend(revisions);
+    }
+
+    /// Returns the revisions, in order, of the casters that the static-caster cache will hold once
+    /// `draws` has renewed it.
+    pub fn static_after_renewal(
+        &self,
+        draws: &ViewDraws,
+        casters: &FrameCasters<'_>,
+    ) -> Vec<Option<Revision>> {
+        let now = now(draws, casters);
+        let found = self.static_casters(&now);
+        found.map(|drawn| drawn.revision).collect()
     }
 
     /// Updates the cache's state to what `draws` puts into the layer.
@@ -301,6 +339,7 @@ fn now(draws: &ViewDraws, casters: &FrameCasters<'_>) -> Vec<Drawn> {
         Drawn {
             revision: facts.revision,
             triangles: facts.triangles,
+            batch: facts.batch,
             age: 0,
         }
     });
@@ -321,7 +360,11 @@ fn unchanged<'a>(before: &'a [Drawn], now: &'a [Drawn]) -> impl Iterator<Item = 
 
 /// Returns what drawing the casters costs, in copied texels.
 fn draw_cost_texels(drawn: impl Iterator<Item = Drawn>) -> u64 {
-    drawn
-        .map(|drawn| TEXELS_PER_DRAW + TEXELS_PER_TRIANGLE * u64::from(drawn.triangles))
-        .sum()
+    let mut counter = DrawCounter::new();
+    let mut triangles = 0;
+    for drawn in drawn {
+        counter.add(drawn.batch);
+        triangles += u64::from(drawn.triangles);
+    }
+    TEXELS_PER_DRAW * counter.draws() + TEXELS_PER_TRIANGLE * triangles
 }

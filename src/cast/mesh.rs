@@ -1,14 +1,15 @@
 //! Provides a ready-made caster: a vertex buffer, an optional index buffer, and a matrix.
 
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::OnceLock;
 
 use glam::Mat4;
 
-use crate::cast::mesh_check::{check_bounds, check_buffers, check_matrix, check_pipeline};
+use crate::cast::instances::{CasterInstances, Instance, append_matrix};
+use crate::cast::mesh_check::{MESH, check_bounds, check_buffers, check_matrix, check_pipeline};
 use crate::cast::mesh_descriptor::{MeshCasterDescriptor, MeshIndices};
-use crate::cast::{CasterPipeline, ModelTransform, Revision, ShadowCaster};
+use crate::cast::mesh_geometry::MeshGeometry;
+use crate::cast::{CasterPipeline, Revision, ShadowCaster};
 use crate::error::CasterError;
-use crate::error::DeviceError;
 use crate::fit::CasterShape;
 use crate::gpu::filled_buffer;
 use crate::{Aabb, ShadowView};
@@ -19,24 +20,24 @@ use crate::{Aabb, ShadowView};
 /// [`set_geometry`](Self::set_geometry) replaces the buffers, and when
 /// [`geometry_changed`](Self::geometry_changed) is called, so that meshes that do not move keep
 /// their maps. Buffers whose contents change without such a call leave a stale shadow behind.
+///
+/// Meshes that share a pipeline, buffers and a range of indices are drawn in one call for each
+/// view, whatever lies between them in the engine's list. For many copies of one mesh,
+/// [`InstancedMeshCaster`](crate::InstancedMeshCaster) is one caster, and costs less memory and
+/// less of a frame.
 #[derive(Debug)]
 pub struct MeshCaster {
-    pipeline: CasterPipeline,
-    vertices: wgpu::Buffer,
-    indices: MeshIndices,
+    geometry: MeshGeometry,
     bounds_model: Aabb,
-    bounds_render: Aabb,
-    transform: Option<wgpu::Buffer>,
-    render_from_model: Mat4,
+    instance: Instance,
     shape_model: CasterShape,
     casts: bool,
     receives: bool,
     label: String,
-    id: u64,
-    version: u64,
+    /// Holds the matrix for [`ShadowCaster::draw`], once that has been called; `None` where the
+    /// device could not make the buffer.
+    own_matrix: OnceLock<Option<wgpu::Buffer>>,
 }
-
-static NEXT_ID: AtomicU64 = AtomicU64::new(0);
 
 impl MeshCaster {
     /// Keeps handles of the buffers; only the matrix is copied.
@@ -51,39 +52,34 @@ impl MeshCaster {
         descriptor: &MeshCasterDescriptor<'_>,
     ) -> Result<Self, CasterError> {
         check_matrix(&descriptor.render_from_model)?;
-        check_pipeline(device, descriptor.pipeline)?;
+        check_pipeline(&MESH, device, descriptor.pipeline)?;
         check_buffers(
+            &MESH,
             descriptor.pipeline,
             descriptor.vertices,
             &descriptor.indices,
         )?;
-        let has_matrix = matches!(
-            descriptor.pipeline.model_transform(),
-            ModelTransform::InstanceMatrix { .. }
+        let geometry = MeshGeometry::new(
+            descriptor.pipeline,
+            descriptor.vertices,
+            descriptor.indices.clone(),
         );
-        let mut mesh = Self {
-            pipeline: descriptor.pipeline.clone(),
-            vertices: descriptor.vertices.clone(),
-            indices: descriptor.indices.clone(),
+        let instance = checked_instance(
+            &geometry,
+            &descriptor.bounds_model,
+            &descriptor.render_from_model,
+            Revision::of_new_mesh(),
+        )?;
+        Ok(Self {
+            geometry,
             bounds_model: descriptor.bounds_model,
-            bounds_render: descriptor.bounds_model,
-            transform: None,
-            render_from_model: descriptor.render_from_model,
+            instance,
             shape_model: CasterShape::Any,
             casts: true,
             receives: true,
             label: descriptor.label.unwrap_or("shadow mesh caster").to_owned(),
-            id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
-            version: 0,
-        };
-        if has_matrix {
-            mesh.transform = Some(mesh.transform_buffer(&descriptor.render_from_model)?);
-            if mirrors(&descriptor.render_from_model) {
-                mesh.pipeline = mesh.pipeline.mirrored();
-            }
-        }
-        mesh.bounds_render = mesh.bounds(&mesh.bounds_model, &mesh.render_from_model)?;
-        Ok(mesh)
+            own_matrix: OnceLock::new(),
+        })
     }
 
     /// Sets what is known of the surface in model space;
@@ -105,32 +101,25 @@ impl MeshCaster {
     /// already, and this call has no effect.
     ///
     /// Passes that were recorded before show the mesh where it was then, whenever they are
-    /// submitted: the matrix goes into a new buffer, and passes keep the one that they were
-    /// recorded with.
+    /// submitted: lights copy the matrix into their own buffers in the order of the engine's
+    /// commands.
     ///
     /// # Errors
     /// Returns [`CasterError::NotFinite`] for a matrix that is not finite or takes the bounds to
-    /// infinity, [`CasterError::Device`] for a device that is lost or out of memory; the mesh stays
-    /// where it was.
+    /// infinity; the mesh stays where it was.
     pub fn set_transform(&mut self, render_from_model: Mat4) -> Result<(), CasterError> {
         check_matrix(&render_from_model)?;
-        if self.transform.is_none() || render_from_model == self.render_from_model {
+        if self.geometry.matrix_layout().is_none()
+            || render_from_model == self.instance.render_from_model
+        {
             return Ok(());
         }
-        let bounds_render = self.bounds(&self.bounds_model, &render_from_model)?;
-        self.transform = Some(self.transform_buffer(&render_from_model)?);
-        if mirrors(&render_from_model) != mirrors(&self.render_from_model) {
-            self.pipeline = self.pipeline.mirrored();
-        }
-        self.render_from_model = render_from_model;
-        self.bounds_render = bounds_render;
-        self.version += 1;
-        Ok(())
+        self.change(&self.bounds_model.clone(), &render_from_model)
     }
 
     /// Returns the transform to render space from model space.
     pub fn render_from_model(&self) -> Mat4 {
-        self.render_from_model
+        self.instance.render_from_model
     }
 
     /// Records that the contents of the buffers have changed and sets their new bounds in model
@@ -140,9 +129,8 @@ impl MeshCaster {
     /// Returns [`CasterError::NotFinite`] for bounds that are neither finite nor empty; the mesh
     /// keeps those that it had.
     pub fn geometry_changed(&mut self, bounds_model: Aabb) -> Result<(), CasterError> {
-        self.bounds_render = self.bounds(&bounds_model, &self.render_from_model)?;
+        self.change(&bounds_model, &self.instance.render_from_model.clone())?;
         self.bounds_model = bounds_model;
-        self.version += 1;
         Ok(())
     }
 
@@ -163,72 +151,77 @@ impl MeshCaster {
         indices: MeshIndices,
         bounds_model: Aabb,
     ) -> Result<(), CasterError> {
-        check_buffers(&self.pipeline, vertices, &indices)?;
+        check_buffers(&MESH, self.geometry.pipeline(false), vertices, &indices)?;
         self.geometry_changed(bounds_model)?;
-        self.vertices = vertices.clone();
-        self.indices = indices;
+        self.geometry.set_buffers(vertices, indices);
         Ok(())
     }
 
-    /// Returns the bounds in render space that a mesh with `bounds_model` would have under a
-    /// transform.
-    fn bounds(&self, bounds_model: &Aabb, render_from_model: &Mat4) -> Result<Aabb, CasterError> {
-        check_bounds("MeshCasterDescriptor::bounds_model", bounds_model)?;
-        if self.transform.is_none() {
-            return Ok(*bounds_model);
-        }
-        let bounds = bounds_model.transformed(render_from_model);
-        check_bounds(
-            "MeshCasterDescriptor::render_from_model * bounds_model",
-            &bounds,
-        )?;
-        Ok(bounds)
+    /// Replaces the instance by one of the next version.
+    fn change(&mut self, bounds_model: &Aabb, matrix: &Mat4) -> Result<(), CasterError> {
+        let revision = self.instance.revision.next();
+        self.instance = checked_instance(&self.geometry, bounds_model, matrix, revision)?;
+        self.own_matrix = OnceLock::new();
+        Ok(())
     }
 
-    /// Returns a vertex buffer with one instance that holds the matrix at the offset where the
-    /// pipeline reads it.
-    fn transform_buffer(&self, render_from_model: &Mat4) -> Result<wgpu::Buffer, CasterError> {
-        filled_buffer(
-            self.pipeline.device(),
-            &self.label,
-            &matrix_bytes(&self.pipeline, render_from_model),
-            wgpu::BufferUsages::VERTEX,
-        )
-        .map_err(|refusal| {
-            CasterError::Device(DeviceError {
-                object: "the transform of a mesh",
-                refusal,
-            })
-        })
+    /// Returns a vertex buffer with one instance, for [`ShadowCaster::draw`].
+    fn matrix_buffer(&self, layout: (u64, u64)) -> Option<&wgpu::Buffer> {
+        let make = || {
+            let mut bytes = Vec::new();
+            append_matrix(&mut bytes, layout, &self.instance.render_from_model);
+            let device = self.geometry.pipeline(false).device();
+            filled_buffer(device, &self.label, &bytes, wgpu::BufferUsages::VERTEX).ok()
+        };
+        self.own_matrix.get_or_init(make).as_ref()
     }
+}
+
+/// Makes an instance whose bounds are finite or empty.
+fn checked_instance(
+    geometry: &MeshGeometry,
+    bounds_model: &Aabb,
+    render_from_model: &Mat4,
+    revision: Revision,
+) -> Result<Instance, CasterError> {
+    check_bounds(MESH.bounds_model, bounds_model)?;
+    let instance = Instance::new(geometry, bounds_model, *render_from_model, revision);
+    check_bounds(
+        "MeshCasterDescriptor::render_from_model * bounds_model",
+        &instance.bounds_render,
+    )?;
+    Ok(instance)
 }
 
 impl ShadowCaster for MeshCaster {
     fn bounds(&self) -> Aabb {
-        self.bounds_render
+        self.instance.bounds_render
     }
 
     fn pipeline(&self) -> &CasterPipeline {
-        &self.pipeline
+        self.geometry.pipeline(self.instance.mirrors)
     }
 
+    /// Draws the mesh by itself. Lights draw it by its [`instances`](ShadowCaster::instances)
+    /// instead; only a caster that wraps it and does not return them calls this. Where the device
+    /// is lost or out of memory, nothing is drawn.
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, _view: &ShadowView) {
-        pass.set_vertex_buffer(0, self.vertices.slice(..));
-        if let Some(transform) = &self.transform {
-            pass.set_vertex_buffer(1, transform.slice(..));
+        if let Some(layout) = self.geometry.matrix_layout() {
+            let Some(matrix) = self.matrix_buffer(layout) else {
+                return;
+            };
+            pass.set_vertex_buffer(1, matrix.slice(..));
         }
-        match &self.indices {
-            MeshIndices::None { vertices } => pass.draw(vertices.clone(), 0..1),
-            MeshIndices::Buffer {
-                buffer,
-                format,
-                indices,
-                base_vertex,
-            } => {
-                pass.set_index_buffer(buffer.slice(..), *format);
-                pass.draw_indexed(indices.clone(), *base_vertex, 0..1);
-            }
-        }
+        self.geometry.bind(pass);
+        self.geometry.draw(pass, 0..1);
+    }
+
+    fn instances(&self) -> Option<CasterInstances<'_>> {
+        Some(CasterInstances {
+            geometry: &self.geometry,
+            shape_model: self.shape_model,
+            instances: std::slice::from_ref(&self.instance),
+        })
     }
 
     fn casts(&self) -> bool {
@@ -240,8 +233,10 @@ impl ShadowCaster for MeshCaster {
     }
 
     fn shape(&self) -> CasterShape {
-        match self.transform {
-            Some(_) => self.shape_model.transformed(&self.render_from_model),
+        match self.geometry.matrix_layout() {
+            Some(_) => self
+                .shape_model
+                .transformed(&self.instance.render_from_model),
             None => self.shape_model,
         }
     }
@@ -255,33 +250,10 @@ impl ShadowCaster for MeshCaster {
     }
 
     fn triangles(&self) -> u32 {
-        let corners = match &self.indices {
-            MeshIndices::None { vertices } => vertices.len(),
-            MeshIndices::Buffer { indices, .. } => indices.len(),
-        };
-        self.pipeline.triangles_of(corners as u32)
+        self.geometry.triangles()
     }
 
     fn revision(&self) -> Option<Revision> {
-        Some(Revision::of_mesh(self.id, self.version))
+        Some(self.instance.revision)
     }
-}
-
-/// Returns whether a transform turns a counter-clockwise triangle into a clockwise one.
-fn mirrors(render_from_model: &Mat4) -> bool {
-    render_from_model.determinant() < 0.0
-}
-
-/// Returns the bytes of one instance, with the matrix at the offset where the pipeline reads it.
-fn matrix_bytes(pipeline: &CasterPipeline, matrix: &Mat4) -> Vec<u8> {
-    let (array_stride, offset) = match pipeline.model_transform() {
-        ModelTransform::Identity => (64, 0),
-        ModelTransform::InstanceMatrix {
-            array_stride,
-            offset,
-        } => (array_stride as usize, offset as usize),
-    };
-    let mut bytes = vec![0; array_stride];
-    bytes[offset..offset + 64].copy_from_slice(bytemuck::bytes_of(matrix));
-    bytes
 }

@@ -1,4 +1,4 @@
-//! Checks that what a [`MeshCaster`](crate::MeshCaster) is made of can be drawn in every frame.
+//! Checks that what ready-made casters are made of can be drawn in every frame.
 
 use std::ops::Range;
 
@@ -10,6 +10,38 @@ use crate::error::CasterError;
 use crate::error::DeviceError;
 use crate::gpu::capture_device_errors;
 use crate::{Aabb, error::DeviceRefusal};
+
+/// Holds the paths of the fields of a descriptor, for errors.
+#[derive(Debug)]
+pub(crate) struct MeshFields {
+    pub pipeline: &'static str,
+    pub vertices: &'static str,
+    pub vertex_range: &'static str,
+    pub index_buffer: &'static str,
+    pub index_format: &'static str,
+    pub index_range: &'static str,
+    pub bounds_model: &'static str,
+}
+
+pub(crate) const MESH: MeshFields = MeshFields {
+    pipeline: "MeshCasterDescriptor::pipeline",
+    vertices: "MeshCasterDescriptor::vertices",
+    vertex_range: "MeshCasterDescriptor::indices.vertices",
+    index_buffer: "MeshCasterDescriptor::indices.buffer",
+    index_format: "MeshCasterDescriptor::indices.format",
+    index_range: "MeshCasterDescriptor::indices.indices",
+    bounds_model: "MeshCasterDescriptor::bounds_model",
+};
+
+pub(crate) const INSTANCED_MESH: MeshFields = MeshFields {
+    pipeline: "InstancedMeshCasterDescriptor::pipeline",
+    vertices: "InstancedMeshCasterDescriptor::vertices",
+    vertex_range: "InstancedMeshCasterDescriptor::indices.vertices",
+    index_buffer: "InstancedMeshCasterDescriptor::indices.buffer",
+    index_format: "InstancedMeshCasterDescriptor::indices.format",
+    index_range: "InstancedMeshCasterDescriptor::indices.indices",
+    bounds_model: "InstancedMeshCasterDescriptor::bounds_model",
+};
 
 pub(crate) fn check_matrix(render_from_model: &Mat4) -> Result<(), CasterError> {
     if render_from_model.is_finite() {
@@ -36,40 +68,42 @@ pub(crate) fn check_bounds(field: &'static str, bounds: &Aabb) -> Result<(), Cas
 
 /// Accepts pipelines of `device` for which a mesh sets everything that they read.
 pub(crate) fn check_pipeline(
+    fields: &MeshFields,
     device: &wgpu::Device,
     pipeline: &CasterPipeline,
 ) -> Result<(), CasterError> {
-    let field = "MeshCasterDescriptor::pipeline";
+    let field = fields.pipeline;
     if pipeline.device() != device {
         return Err(CasterError::OtherDevice { field });
     }
     match pipeline.beyond_a_mesh() {
         None => Ok(()),
-        Some(needs) => Err(CasterError::MeshPipeline { needs }),
+        Some(needs) => Err(CasterError::MeshPipeline { field, needs }),
     }
 }
 
 /// Accepts buffers of the pipeline's device that hold the ranges that are drawn.
 pub(crate) fn check_buffers(
+    fields: &MeshFields,
     pipeline: &CasterPipeline,
     vertices: &wgpu::Buffer,
     indices: &MeshIndices,
 ) -> Result<(), CasterError> {
     if !vertices.usage().contains(wgpu::BufferUsages::VERTEX) {
         return Err(CasterError::BufferUsage {
-            field: "MeshCasterDescriptor::vertices",
+            field: fields.vertices,
             usage: "BufferUsages::VERTEX",
         });
     }
     let drawn = match indices {
         MeshIndices::None { vertices } => {
-            check_range("MeshCasterDescriptor::indices.vertices", vertices)?;
+            check_range(fields.vertex_range, vertices)?;
             vertices.end
         }
         MeshIndices::Buffer { .. } => 0,
     };
     require(
-        "MeshCasterDescriptor::vertices",
+        fields.vertices,
         pipeline.vertex_bytes(drawn).max(1),
         vertices.size(),
     )?;
@@ -80,22 +114,27 @@ pub(crate) fn check_buffers(
         ..
     } = indices
     {
-        check_range("MeshCasterDescriptor::indices.indices", indices)?;
-        check_indices(pipeline, buffer, *format, indices)?;
+        check_range(fields.index_range, indices)?;
+        check_indices(fields, pipeline, buffer, *format, indices)?;
     }
-    check_owner(pipeline.device(), vertices, indices)
+    check_owner(fields, pipeline.device(), vertices, indices)
 }
 
 fn check_indices(
+    fields: &MeshFields,
     pipeline: &CasterPipeline,
     buffer: &wgpu::Buffer,
     format: wgpu::IndexFormat,
     indices: &Range<u32>,
 ) -> Result<(), CasterError> {
-    let field = "MeshCasterDescriptor::indices.buffer";
+    let field = fields.index_buffer;
     if let Some(expected) = pipeline.strip_index_format() {
         if expected != Some(format) {
-            return Err(CasterError::IndexFormat { expected, format });
+            return Err(CasterError::IndexFormat {
+                field: fields.index_format,
+                expected,
+                format,
+            });
         }
     }
     if !buffer.usage().contains(wgpu::BufferUsages::INDEX) {
@@ -115,6 +154,7 @@ fn check_indices(
 /// mismatch when an encoder that uses the buffer is finished, so this finishes an encoder that is
 /// then thrown away.
 fn check_owner(
+    fields: &MeshFields,
     device: &wgpu::Device,
     vertices: &wgpu::Buffer,
     indices: &MeshIndices,
@@ -137,18 +177,12 @@ fn check_owner(
             })),
         }
     };
-    check(
-        "MeshCasterDescriptor::vertices",
-        vertices,
-        wgpu::BufferUses::VERTEX,
-    )?;
+    check(fields.vertices, vertices, wgpu::BufferUses::VERTEX)?;
     match indices {
         MeshIndices::None { .. } => Ok(()),
-        MeshIndices::Buffer { buffer, .. } => check(
-            "MeshCasterDescriptor::indices.buffer",
-            buffer,
-            wgpu::BufferUses::INDEX,
-        ),
+        MeshIndices::Buffer { buffer, .. } => {
+            check(fields.index_buffer, buffer, wgpu::BufferUses::INDEX)
+        }
     }
 }
 

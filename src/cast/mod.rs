@@ -2,7 +2,8 @@
 //! are sampled.
 //!
 //! ```text
-//! caster.rs              ShadowCaster and Revision: what the engine implements
+//! caster.rs              ShadowCaster: what the engine implements; revision.rs: its Revision
+//! instances.rs           CasterInstances: copies of a mesh, which batches are made of
 //! caster_set.rs          CasterSet: casters that stay from frame to frame
 //! caster_answers.rs      what the methods of casters returned
 //! frame_casters.rs       the casters of a frame
@@ -12,11 +13,14 @@
 //! pipeline_reads.rs      what a vertex stage reads
 //! caster_limits.rs       what pipelines and passes need of a device's limits
 //! view_uniform.rs        the uniforms of a view in a vertex stage
-//! mesh.rs                MeshCaster: a ready-made caster; mesh_descriptor.rs, mesh_check.rs: its descriptor and checks
+//! mesh.rs                MeshCaster: a ready-made caster; instanced_mesh.rs: InstancedMeshCaster
+//! mesh_descriptor.rs     what they are made of; mesh_check.rs, mesh_geometry.rs: their checks and buffers
 //! closed.rs              which meshes are closed solids; mesh_shape.rs: which cannot shadow themselves
 //! layer_cache.rs         what a layer caches, and what a frame must draw
 //! recorder.rs            the passes; shared_layer.rs: how parts of a layer are cleared and copied
-//! draw_casters.rs        the loop that draws casters in them
+//! draw_list.rs           the draw calls of the passes, one for all instances of equal geometry
+//! instance_matrices.rs   the matrices that these draw
+//! draw_casters.rs        the loop that makes the draw calls
 //! cube_pass.rs           six faces in one pass; cube_rule.rs: when that is cheaper than a pass for each
 //! ```
 
@@ -29,36 +33,45 @@ mod cube_pass;
 mod cube_pipeline;
 mod cube_rule;
 mod draw_casters;
+mod draw_list;
 mod frame_casters;
+mod instance_matrices;
+mod instanced_mesh;
+mod instances;
 mod layer_cache;
 mod mesh;
 mod mesh_check;
 mod mesh_descriptor;
+mod mesh_geometry;
 mod mesh_shape;
 mod pipeline;
 mod pipeline_build;
 mod pipeline_descriptor;
 mod pipeline_reads;
 mod recorder;
+mod revision;
 mod shared_layer;
 mod view_uniform;
 
-pub use caster::{Revision, ShadowCaster};
+pub use caster::ShadowCaster;
 pub(crate) use caster_answers::{CasterAnswers, Content};
-pub use caster_set::{CasterId, CasterSet, Casters, RetainedCasters};
 pub(crate) use caster_limits::caster_group;
+pub use caster_set::{CasterId, CasterSet, Casters, RetainedCasters};
 pub use closed::is_closed_solid;
 pub use frame_casters::BrokenBounds;
 pub(crate) use frame_casters::{FrameCasters, sound_bounds};
+pub use instanced_mesh::InstancedMeshCaster;
+pub use instances::CasterInstances;
 pub(crate) use layer_cache::{Plan, ViewDraws};
 pub use mesh::MeshCaster;
-pub use mesh_descriptor::{MeshCasterDescriptor, MeshIndices};
+pub use mesh_descriptor::{InstancedMeshCasterDescriptor, MeshCasterDescriptor, MeshIndices};
 pub use mesh_shape::caster_shape;
 pub use pipeline::CasterPipeline;
 pub use pipeline_descriptor::{
     CasterPipelineDescriptor, CasterVertex, ModelTransform, PositionAttribute,
 };
 pub(crate) use recorder::{Recorder, RecorderKind};
+pub use revision::Revision;
 pub(crate) use view_uniform::VIEW_UNIFORM_BYTES;
 
 /// Clears a map to the far plane (reversed depth): nothing casts.

@@ -1,6 +1,7 @@
 //! Defines `CasterPipeline`: the depth-only pipelines of one kind of caster.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::cast::caster_limits::check_caster;
 use crate::cast::cube_pipeline::CubePipelines;
@@ -24,6 +25,8 @@ pub struct CasterPipeline {
 
 #[derive(Debug)]
 struct Variants {
+    /// Numbers the pipelines in the order of their creation.
+    number: u64,
     device: wgpu::Device,
     by_format: ByFormat,
     /// Holds `None` for the engine's own WGSL.
@@ -35,6 +38,8 @@ struct Variants {
     cube: Option<CubePipelines>,
     primitive: wgpu::PrimitiveState,
 }
+
+static NEXT_NUMBER: AtomicU64 = AtomicU64::new(0);
 
 impl PartialEq for CasterPipeline {
     fn eq(&self, other: &Self) -> bool {
@@ -76,6 +81,7 @@ impl CasterPipeline {
             })?;
         Ok(Self {
             variants: Arc::new(Variants {
+                number: NEXT_NUMBER.fetch_add(1, Ordering::Relaxed),
                 device: device.clone(),
                 by_format,
                 built_in,
@@ -123,6 +129,17 @@ impl CasterPipeline {
     pub(crate) fn multiview_pipeline(&self) -> Option<&wgpu::RenderPipeline> {
         let variants = &self.variants;
         variants.cube.as_ref()?.get(&variants.device, self.mirrored)
+    }
+
+    /// Orders pipelines by their creation. Two that draw alike have the same key.
+    pub(crate) fn sort_key(&self) -> u64 {
+        let culls = self.variants.primitive.cull_mode.is_some();
+        self.variants.number << 1 | u64::from(self.mirrored && culls)
+    }
+
+    /// Returns whether both name the same wgpu pipelines, which a pass then sets only once.
+    pub(crate) fn draws_like(&self, other: &Self) -> bool {
+        self.sort_key() == other.sort_key()
     }
 
     /// Returns the number of triangles that `corners` vertices or indices make; for a strip,

@@ -1,13 +1,15 @@
 //! Determines which views need drawing this frame, and records the passes that draw them.
 
 use crate::cast::cube_pass::{CubePass, PreparedCubePass};
-use crate::cast::draw_casters::{DrawnCaster, PassDefaults, draw_casters};
+use crate::cast::draw_casters::{DrawContext, PassDefaults, draw_casters};
+use crate::cast::draw_list::{DrawCall, DrawLists};
+use crate::cast::instance_matrices::InstanceMatrices;
 use crate::cast::layer_cache::{LayerCache, Plan, ViewDraws};
 use crate::cast::shared_layer::SharedLayer;
 use crate::cast::view_uniform::{CasterViewUniform, VIEW_UNIFORM_BYTES, view_layout};
 use crate::cast::{CLEAR, CasterPipeline, FrameCasters};
 use crate::error::DeviceError;
-use crate::gpu::{DepthFormat, DepthMap, PendingUpload, UploadBuffer, capture_device_errors};
+use crate::gpu::{DepthFormat, DepthMap, Upload, UploadBuffer, capture_device_errors};
 use crate::{ShadowError, ShadowView};
 
 /// Draws views into the layers of a depth map, and tracks what each layer caches.
@@ -18,6 +20,9 @@ pub(crate) struct Recorder {
     stride: u64,
     bind_group: wgpu::BindGroup,
     layers: Vec<Layer>,
+    matrices: InstanceMatrices,
+    /// Holds nothing but memory between frames.
+    lists: DrawLists<'static>,
     /// Is false on wgpu's OpenGL backend, which copies no depth textures, unless views share a
     /// layer, where a draw copies them; all casters of a view are drawn again there.
     can_copy: bool,
@@ -51,18 +56,9 @@ pub(crate) enum RecorderKind {
 
 /// Holds everything that could fail, made before the encoder is touched.
 pub(crate) struct PreparedViews<'a> {
-    upload: Option<PendingUpload>,
     /// Replaces the pass for each view.
-    cube: Option<PreparedCubePass<'a>>,
-    /// Lists the pipelines of the casters of all views that are drawn, one view after the other.
-    pipelines: Vec<&'a CasterPipeline>,
-}
-
-impl PreparedViews<'_> {
-    /// Returns whether anything was made on the device.
-    pub fn uploads(&self) -> bool {
-        self.upload.is_some() || self.cube.as_ref().is_some_and(PreparedCubePass::uploads)
-    }
+    cube: Option<PreparedCubePass>,
+    lists: DrawLists<'a>,
 }
 
 impl Recorder {
@@ -117,6 +113,8 @@ impl Recorder {
             stride,
             bind_group,
             layers: layers.collect(),
+            matrices: InstanceMatrices::new(device, label),
+            lists: DrawLists::default(),
             can_copy: shared_layer.is_some() || device.adapter_info().backend != wgpu::Backend::Gl,
             shared_layer,
             cube: if kind == RecorderKind::Cube {
@@ -145,7 +143,7 @@ impl Recorder {
         own.chain(shared).map(DepthMap::bytes).sum()
     }
 
-    /// Plans the frame for `map` and stages the uniforms of `views`. Each view is made to allow for
+    /// Plans the frame for `map` and finds the uniforms of `views`. Each view is made to allow for
     /// the rounding of the depths that its layer will hold.
     pub fn prepare<'a>(
         &mut self,
@@ -154,7 +152,41 @@ impl Recorder {
         views: &mut [ViewDraws],
         casters: &FrameCasters<'a>,
     ) -> Result<PreparedViews<'a>, ShadowError> {
-        let mut pipelines = Vec::new();
+        self.matrices.clear();
+        let mut lists = std::mem::take(&mut self.lists).recycled();
+        let cube = self.prepare_lists(device, map, views, casters, &mut lists);
+        match cube.and_then(|cube| self.matrices.prepare(device).map(|()| cube)) {
+            Ok(cube) => Ok(PreparedViews { cube, lists }),
+            Err(error) => {
+                self.lists = lists.recycled();
+                Err(error)
+            }
+        }
+    }
+
+    /// Adds what must be copied before the passes.
+    pub fn add_uploads<'a>(
+        &'a self,
+        prepared: &'a PreparedViews<'_>,
+        uploads: &mut Vec<Upload<'a>>,
+    ) {
+        uploads.extend(match (&self.cube, &prepared.cube) {
+            (Some(cube), Some(prepared)) => cube.upload(prepared),
+            _ => self.uniforms.upload(&self.bytes),
+        });
+        uploads.extend(self.matrices.uploads());
+    }
+
+    /// Plans all views and lists their draw calls. Returns the pass that replaces those of the six
+    /// faces, if there is one.
+    fn prepare_lists<'a>(
+        &mut self,
+        device: &wgpu::Device,
+        map: &DepthMap,
+        views: &mut [ViewDraws],
+        casters: &FrameCasters<'a>,
+        lists: &mut DrawLists<'a>,
+    ) -> Result<Option<PreparedCubePass>, ShadowError> {
         self.bytes.clear();
         self.bytes
             .resize(self.stride as usize * self.layers.len(), 0);
@@ -170,15 +202,6 @@ impl Recorder {
                     draws.plan = Plan::All;
                 }
             }
-            if draws.plan != Plan::Keep {
-                add_pipelines(
-                    &mut pipelines,
-                    device,
-                    map.format(),
-                    &draws.casters,
-                    casters,
-                )?;
-            }
             let render_reach = layer.cache.render_reach_after(draws);
             draws.view = draws.view.over_depths_from(render_reach);
             let uniform = CasterViewUniform::of(&draws.view);
@@ -188,23 +211,59 @@ impl Recorder {
         }
         if let Some(cube) = &self.cube {
             if views.iter().all(|draws| draws.plan == Plan::All) {
-                if let Some(cube) = cube.prepare(device, views, casters)? {
-                    return Ok(PreparedViews {
-                        upload: None,
-                        cube: Some(cube),
-                        pipelines,
-                    });
+                let matrices = &mut self.matrices;
+                let prepared = cube.prepare(device, views, casters, lists, matrices);
+                if prepared.is_some() {
+                    return Ok(prepared);
                 }
+                lists.clear();
+                self.matrices.clear();
             }
         }
-        Ok(PreparedViews {
-            upload: self.uniforms.prepare(device, &self.bytes)?,
-            cube: None,
-            pipelines,
-        })
+        let (field, format) = (casters.field, map.format());
+        let check = |index: u32, pipeline: &CasterPipeline| {
+            let index = casters.listed_index(index);
+            if pipeline.device() != device {
+                return Err(ShadowError::CasterDevice { field, index });
+            }
+            if pipeline.wgpu_pipeline(format).is_none() {
+                return Err(ShadowError::CasterFormat {
+                    field,
+                    index,
+                    format,
+                });
+            }
+            Ok(())
+        };
+        for draws in views {
+            let cache = &self.layers[draws.view.index() as usize].cache;
+            let mut add = |drawn: &mut dyn Iterator<Item = u32>| {
+                lists.add(drawn, casters, &mut self.matrices, check)
+            };
+            let all = draws.casters.iter().copied();
+            let revision = |index: u32| casters.facts(index).revision;
+            let (static_calls, calls) = match draws.plan {
+                Plan::Keep => (0..0, 0..0),
+                Plan::All => (0..0, add(&mut all.clone())?),
+                Plan::OverStaticCache => {
+                    let mut moving = all.filter(|&index| !cache.is_static(revision(index)));
+                    (0..0, add(&mut moving)?)
+                }
+                Plan::RenewStaticCache => {
+                    let found = cache.static_after_renewal(draws, casters);
+                    let is_static = |index: &u32| found.binary_search(&revision(*index)).is_ok();
+                    (
+                        add(&mut all.clone().filter(is_static))?,
+                        add(&mut all.clone().filter(|index| !is_static(index)))?,
+                    )
+                }
+            };
+            (draws.static_calls, draws.calls) = (static_calls, calls);
+        }
+        Ok(None)
     }
 
-    /// Records what was planned and returns the number of passes.
+    /// Records what was planned, after the uploads, and returns the number of passes.
     ///
     /// The state of a layer is reset before anything is drawn into it and set again when its pass
     /// is complete: a caster that panics leaves a layer behind that the next frame draws again.
@@ -216,31 +275,34 @@ impl Recorder {
         views: &mut [ViewDraws],
         casters: &FrameCasters<'_>,
     ) -> u32 {
-        if let (Some(cube), Some(prepared)) = (&mut self.cube, prepared.cube) {
+        let PreparedViews {
+            cube: prepared_cube,
+            lists,
+        } = prepared;
+        if let (Some(cube), Some(prepared)) = (&mut self.cube, prepared_cube) {
             // The pass clears all layers, those of faces that nothing casts into as well.
             let mut caches: Vec<LayerCache> =
                 self.layers.iter_mut().map(Layer::take_cache).collect();
             for draws in views.iter() {
                 caches[draws.view.index() as usize].replace(draws, casters);
             }
-            cube.record(encoder, map, prepared, views, casters);
+            let frame = (casters, &self.matrices);
+            cube.record(encoder, map, prepared, views, &lists, frame);
+            self.lists = lists.recycled();
             for draws in views.iter() {
                 let index = draws.view.index() as usize;
                 self.layers[index].cache = std::mem::take(&mut caches[index]);
             }
             return 1;
         }
-        self.uniforms.commit(encoder, prepared.upload);
+        self.uniforms.set_written(&self.bytes);
         let mut passes = 0;
-        let mut pipelines = prepared.pipelines.as_slice();
         for draws in views {
             if draws.plan == Plan::Keep {
                 let layer = &mut self.layers[draws.view.index() as usize];
                 layer.cache.keep(draws, casters);
                 continue;
             }
-            let (own_pipelines, others) = pipelines.split_at(draws.casters.len());
-            pipelines = others;
             let index = draws.view.index();
             let layer = &mut self.layers[index as usize];
             let mut cache = layer.take_cache();
@@ -251,10 +313,14 @@ impl Recorder {
                 view_group: (&self.bind_group, (self.stride * u64::from(index)) as u32),
                 format: map.format(),
                 shared_layer: self.shared_layer.as_ref(),
+                context: DrawContext {
+                    casters,
+                    matrices: &self.matrices,
+                    view: &draws.view,
+                },
             };
-            let all = draws.casters.iter().zip(own_pipelines);
-            let all = all.map(|(&index, &pipeline)| DrawnCaster { index, pipeline });
-            let (target, view) = (map.layer_view(draws.view.layer()), &draws.view);
+            let calls = lists.calls(draws.calls.clone());
+            let target = map.layer_view(draws.view.layer());
             passes += draws.plan.passes();
             let static_cache = match &self.shared_layer {
                 Some(shared) => shared.static_cache(),
@@ -262,18 +328,15 @@ impl Recorder {
             };
             match static_cache {
                 Some(static_cache) if draws.plan != Plan::All => {
-                    let is_static = |caster: &DrawnCaster<'_>| {
-                        cache.is_static(casters.facts(caster.index).revision)
-                    };
-                    let static_casters = all.clone().filter(is_static);
                     if draws.plan == Plan::RenewStaticCache {
-                        let target = static_cache.layer_view(0);
-                        pass.draw(target, Before::Clear, view, static_casters, casters);
+                        let calls = lists.calls(draws.static_calls.clone());
+                        pass.draw(static_cache.layer_view(0), Before::Clear, calls);
                     } else {
-                        for caster in static_casters {
+                        let drawn = draws.casters.iter();
+                        let facts = drawn.map(|&caster| casters.facts(caster));
+                        for facts in facts.filter(|facts| cache.is_static(facts.revision)) {
                             draws.copied += 1;
-                            draws.copied_triangles +=
-                                u64::from(casters.facts(caster.index).triangles);
+                            draws.copied_triangles += u64::from(facts.triangles);
                         }
                     }
                     if self.shared_layer.is_none() {
@@ -283,13 +346,13 @@ impl Recorder {
                             map.layer_extent(),
                         );
                     }
-                    let moving = all.filter(|caster| !is_static(caster));
-                    pass.draw(target, Before::StaticCasters, view, moving, casters);
+                    pass.draw(target, Before::StaticCasters, calls);
                 }
-                _ => pass.draw(target, Before::Clear, view, all, casters),
+                _ => pass.draw(target, Before::Clear, calls),
             }
             layer.cache = cache;
         }
+        self.lists = lists.recycled();
         passes
     }
 
@@ -336,24 +399,18 @@ enum Before {
 }
 
 /// Records passes over one layer.
-struct LayerPass<'a> {
+struct LayerPass<'a, 'c> {
     encoder: &'a mut wgpu::CommandEncoder,
     label: &'a str,
     view_group: (&'a wgpu::BindGroup, u32),
     format: DepthFormat,
     /// Is present where the view shares its layer with others.
     shared_layer: Option<&'a SharedLayer>,
+    context: DrawContext<'a, 'c>,
 }
 
-impl LayerPass<'_> {
-    fn draw<'c>(
-        &mut self,
-        target: &wgpu::TextureView,
-        before: Before,
-        view: &ShadowView,
-        drawn: impl Iterator<Item = DrawnCaster<'c>>,
-        casters: &FrameCasters<'_>,
-    ) {
+impl LayerPass<'_, '_> {
+    fn draw(&mut self, target: &wgpu::TextureView, before: Before, calls: &[DrawCall<'_>]) {
         // A shared layer keeps the texels of its other views.
         let load = match (self.shared_layer, before) {
             (None, Before::Clear) => CLEAR,
@@ -371,7 +428,7 @@ impl LayerPass<'_> {
         let defaults = PassDefaults {
             view_group: group,
             offsets: &[offset],
-            texels: view.texels(),
+            texels: self.context.view.texels(),
         };
         if let Some(shared) = self.shared_layer {
             defaults.set_rect(&mut pass);
@@ -381,35 +438,9 @@ impl LayerPass<'_> {
             }
         }
         // The planning of the frame has checked that there is a pipeline for the format.
-        let of_format = |pipeline: &'c CasterPipeline| pipeline.wgpu_pipeline(self.format);
-        draw_casters(&mut pass, &defaults, view, drawn, casters, of_format);
+        let format = self.format;
+        draw_casters(&mut pass, &defaults, &self.context, calls, |pipeline| {
+            pipeline.wgpu_pipeline(format)
+        });
     }
-}
-
-/// Adds the pipelines of a view's casters to `pipelines`, each of which must have been made on
-/// `device` and for `format`.
-fn add_pipelines<'a>(
-    pipelines: &mut Vec<&'a CasterPipeline>,
-    device: &wgpu::Device,
-    format: DepthFormat,
-    drawn: &[u32],
-    casters: &FrameCasters<'a>,
-) -> Result<(), ShadowError> {
-    let field = casters.field;
-    for &index in drawn {
-        let pipeline = casters.caster(index).pipeline();
-        let index = index as usize;
-        if pipeline.device() != device {
-            return Err(ShadowError::CasterDevice { field, index });
-        }
-        if pipeline.wgpu_pipeline(format).is_none() {
-            return Err(ShadowError::CasterFormat {
-                field,
-                index,
-                format,
-            });
-        }
-        pipelines.push(pipeline);
-    }
-    Ok(())
 }

@@ -5,7 +5,8 @@ use thiserror::Error;
 use crate::error::{DeviceError, DeviceRefusal};
 
 /// Tells why [`CasterPipeline::new`](crate::CasterPipeline::new),
-/// [`MeshCaster::new`](crate::MeshCaster::new) or a later change of a mesh failed.
+/// [`MeshCaster::new`](crate::MeshCaster::new),
+/// [`InstancedMeshCaster::new`](crate::InstancedMeshCaster::new) or a later change of a mesh failed.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum CasterError {
@@ -32,7 +33,8 @@ pub enum CasterError {
         /// Is the stride of the attribute's buffer in bytes.
         array_stride: u64,
     },
-    /// A pipeline needs more of a resource than the limits with which the device was created allow.
+    /// A pipeline or the matrices of instances need more of a resource than the limits with which
+    /// the device was created allow.
     #[error("{field}: the device's {limit} must be at least {value}, and it is {maximum}")]
     OverDeviceLimit {
         /// Is the path of the field.
@@ -41,7 +43,7 @@ pub enum CasterError {
         limit: &'static str,
         /// Is the limit of the device, in its own unit.
         maximum: u64,
-        /// Is the amount that the pipeline needs, in the same unit.
+        /// Is the amount that is needed, in the same unit.
         value: u64,
     },
     /// The list of depth formats is empty, so that the pipeline could be used with no map.
@@ -93,13 +95,21 @@ pub enum CasterError {
         refusal: DeviceRefusal,
     },
     /// The pipeline has the engine's own vertex stage, and this reads vertex buffers or bind groups
-    /// that a [`MeshCaster`](crate::MeshCaster) does not set.
+    /// that a ready-made mesh does not set.
     #[error(
-        "MeshCasterDescriptor::pipeline must take no more than vertex buffer 0 and no bind group of its own, got one that takes {needs}"
+        "{field} must take no more than vertex buffer 0 and no bind group of its own, got one that takes {needs}"
     )]
     MeshPipeline {
+        /// Is the path of the field.
+        field: &'static str,
         /// Names what else the pipeline reads, such as "vertex buffer 1" or "bind group 1".
         needs: String,
+    },
+    /// The pipeline reads no matrix for each instance, so that all copies would lie in one place.
+    #[error("{field} must have the built-in vertex stage with an instance matrix")]
+    NoInstanceMatrix {
+        /// Is the path of the field.
+        field: &'static str,
     },
     /// The device did not create an object: it is lost or out of memory, or it refused the object.
     #[error(transparent)]
@@ -134,9 +144,11 @@ pub enum CasterError {
     },
     /// The indices have another format than the one with which the pipeline restarts its strips.
     #[error(
-        "MeshCasterDescriptor::indices.format must be the strip index format of the pipeline ({expected:?}), got {format:?}"
+        "{field} must be the strip index format of the pipeline ({expected:?}), got {format:?}"
     )]
     IndexFormat {
+        /// Is the path of the field.
+        field: &'static str,
         /// Is the pipeline's strip index format.
         expected: Option<wgpu::IndexFormat>,
         /// Is the mesh's index format.
@@ -149,5 +161,17 @@ pub enum CasterError {
         field: &'static str,
         /// Is the name of the missing usage flag.
         usage: &'static str,
+    },
+    /// A call names instances that the caster does not have.
+    #[error("{field} must lie in the {count} instances of the caster, got {start}..{end}")]
+    NoSuchInstance {
+        /// Is the name of the parameter.
+        field: &'static str,
+        /// Is the first index that the call names.
+        start: usize,
+        /// Is one past the last index that the call names.
+        end: usize,
+        /// Is the number of instances of the caster.
+        count: usize,
     },
 }

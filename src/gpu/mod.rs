@@ -5,7 +5,7 @@
 //! limits.rs       what objects need of a device's limits
 //! depth_format.rs DepthFormat: 32 or 16 bits a texel
 //! depth_map.rs    a layered depth texture
-//! upload.rs       uniform buffers written in command order
+//! upload.rs       buffers written in command order
 //! multiview.rs    which devices draw six faces at once correctly
 //! fullscreen.rs   pipelines of passes over a whole viewport
 //! ```
@@ -23,5 +23,5 @@ pub(crate) use depth_map::{DepthMap, allocated_layers};
 pub(crate) use fullscreen::fullscreen_pipeline;
 pub(crate) use limits::Need;
 pub(crate) use multiview::{ALL_FACES_MASK, FACE_COUNT, supports_cube_multiview};
-pub(crate) use scope::{capture_device_errors, filled_buffer};
-pub(crate) use upload::{PendingUpload, UploadBuffer};
+pub(crate) use scope::{capture_device_errors, filled_buffer, filled_buffer_of};
+pub(crate) use upload::{StagedUploads, Upload, UploadBuffer};

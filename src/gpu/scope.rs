@@ -31,17 +31,35 @@ pub(crate) fn filled_buffer(
     contents: &[u8],
     usage: wgpu::BufferUsages,
 ) -> Result<wgpu::Buffer, DeviceRefusal> {
+    filled_buffer_of(device, label, std::iter::once(contents), usage)
+}
+
+/// Makes a buffer that holds several contents one after the other, each of which begins at a
+/// multiple of `wgpu::MAP_ALIGNMENT`.
+pub(crate) fn filled_buffer_of<'a>(
+    device: &wgpu::Device,
+    label: &str,
+    contents: impl Iterator<Item = &'a [u8]> + Clone,
+    usage: wgpu::BufferUsages,
+) -> Result<wgpu::Buffer, DeviceRefusal> {
+    let end = |start: u64, contents: &[u8]| {
+        start.next_multiple_of(wgpu::MAP_ALIGNMENT) + contents.len() as u64
+    };
     scoped(device, || {
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
-            size: contents.len() as u64,
+            size: contents.clone().fold(0, end),
             usage,
             mapped_at_creation: true,
         });
-        buffer
-            .get_mapped_range_mut(..)
-            .ok()?
-            .copy_from_slice(contents);
+        let mut offset = 0;
+        for contents in contents {
+            let end = end(offset, contents);
+            let range = end - contents.len() as u64..end;
+            let mut mapped = buffer.get_mapped_range_mut(range).ok()?;
+            mapped.copy_from_slice(contents);
+            offset = end;
+        }
         buffer.unmap();
         Some(buffer)
     })

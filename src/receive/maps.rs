@@ -5,7 +5,7 @@ use glam::Vec3;
 
 use crate::cast::{FrameCasters, Plan, Recorder, RecorderKind, ViewDraws};
 use crate::error::DeviceError;
-use crate::gpu::{DepthMap, UploadBuffer, capture_device_errors};
+use crate::gpu::{DepthMap, StagedUploads, UploadBuffer, capture_device_errors};
 use crate::receive::layer_limits::check_layers;
 use crate::receive::layer_state::LayerState;
 use crate::receive::light_uniforms::{LightUniforms, empty_view_uniform, lights};
@@ -255,11 +255,13 @@ impl ShadowMaps {
             .recorder
             .prepare(device, &self.map, &mut views, &casters)?;
         let uniform_values = self.uniforms_of(layers, &views, camera_render);
-        let upload = self
-            .uniforms
-            .prepare(device, bytemuck::cast_slice(&uniform_values))?;
+        let uniform_bytes = bytemuck::cast_slice(&uniform_values);
+        let mut uploads = Vec::new();
+        uploads.extend(self.uniforms.upload(uniform_bytes));
+        self.recorder.add_uploads(&prepared, &mut uploads);
+        let staged = StagedUploads::new(device, &uploads)?;
         let draws = views.iter().any(|draws| draws.plan != Plan::Keep);
-        if draws && upload.is_none() && !prepared.uploads() {
+        if draws && staged.is_empty() {
             // Nothing was created on the device so far, so that a lost device has not been noticed
             // yet.
             capture_device_errors(device, || ()).map_err(|refusal| {
@@ -270,7 +272,8 @@ impl ShadowMaps {
             })?;
         }
         // Nothing fails from here on.
-        self.uniforms.commit(encoder, upload);
+        staged.commit(encoder, &uploads);
+        self.uniforms.set_written(uniform_bytes);
         self.memory.uniforms = std::mem::replace(&mut self.uniform_values, uniform_values);
         self.report.passes = self
             .recorder
@@ -394,6 +397,7 @@ fn view_report(draws: &ViewDraws, casters: &FrameCasters<'_>) -> ViewReport {
         },
         casters: draws.casters.len() as u32,
         copied: draws.copied,
+        draws: draws.draw_calls(),
         culled: (casters.len() - draws.casters.len()) as u32,
         texel_size_world: draws.view.texel_size_world(),
         depth_range_world: draws.view.depth_range_world(),

@@ -30,18 +30,23 @@ pub struct ViewReport {
     pub texels: TexelRect,
     /// Tells how the view was brought up to date.
     pub status: ViewStatus,
-    /// Counts the casters in the view: those that its pass drew, if it had one, and those that were
-    /// copied. Where all faces of a point light were drawn in one pass, it counts all casters of
+    /// Counts the casters in the view, each copy of a mesh as one: those that its pass drew, if it
+    /// had one, and those that were copied. Where all faces of a point light were drawn in one pass, it counts all casters of
     /// that pass.
     pub casters: u32,
     /// Counts those of the casters that were not drawn: they had not changed for some frames, and
     /// the static-caster cache, which contains them, was copied into the layer before the other
     /// casters were drawn.
     pub copied: u32,
+    /// Counts the draw calls of its passes: one for each caster that draws itself, and one for all
+    /// copies of a mesh ([`ShadowCaster::instances`](crate::ShadowCaster::instances)). It is zero
+    /// for a view that was not drawn. Where all faces of a point light were drawn in one pass, each
+    /// face counts all calls of that pass.
+    pub draws: u32,
     /// Counts the triangles of the casters that were not copied, as far as the casters report them
     /// ([`ShadowCaster::triangles`](crate::ShadowCaster::triangles)).
     pub triangles: u64,
-    /// Counts the casters that were culled because their shadows cannot fall on what the view
+    /// Counts the casters, each copy of a mesh as one, that were culled because their shadows cannot fall on what the view
     /// covers.
     pub culled: u32,
     /// Is the world size of a texel along the map's x and y. For a local light it is that at the
@@ -70,6 +75,7 @@ impl ViewReport {
             status: ViewStatus::Empty,
             casters: 0,
             copied: 0,
+            draws: 0,
             triangles: 0,
             culled,
             texel_size_world: Vec2::ZERO,
@@ -103,12 +109,10 @@ pub struct ShadowReport {
 }
 
 impl ShadowReport {
-    /// Returns the number of casters drawn. A caster counts once for each view that was drawn with
-    /// it, or once in all where six faces were drawn in one pass.
+    /// Returns the number of draw calls. All copies of a mesh in a view take one. A caster that
+    /// draws itself counts one for each pass that it is drawn in, however many calls it makes.
     pub fn draws(&self) -> u32 {
-        let draws = self
-            .drawn()
-            .map(|view| view.casters.saturating_sub(view.copied));
+        let draws = self.drawn().map(|view| view.draws);
         if self.passes == 1 {
             draws.max().unwrap_or(0)
         } else {
@@ -137,15 +141,14 @@ mod tests {
 
     #[test]
     fn any_numbers_are_counted_without_a_panic() {
-        let view = |casters, copied| ViewReport {
+        let view = |draws| ViewReport {
             status: ViewStatus::Drawn,
-            casters,
-            copied,
+            draws,
             triangles: u64::MAX,
             ..ViewReport::empty(0, 0)
         };
         let report = ShadowReport {
-            views: vec![view(0, 1), view(u32::MAX, 0), view(7, 2)],
+            views: vec![view(0), view(u32::MAX), view(7)],
             broken_bounds: Vec::new(),
             passes: 3,
             predicted_error: None,

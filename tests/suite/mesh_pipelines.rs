@@ -53,6 +53,7 @@ fn meshes_that_do_not_go_with_their_pipelines() {
     assert_eq!(create(&strip, through(short, 0..8)), Ok(()));
     let error = create(&strip, through(long, 0..8)).expect_err("a format");
     let wanted = CasterError::IndexFormat {
+        field: "MeshCasterDescriptor::indices.format",
         expected: Some(short),
         format: long,
     };
@@ -262,6 +263,7 @@ fn pipelines_that_take_more_than_a_mesh_sets() {
             (Ok(caster), None) => assert_can_be_drawn(gpu, &caster),
             (Err(error), Some(needs)) => {
                 let wanted = CasterError::MeshPipeline {
+                    field: "MeshCasterDescriptor::pipeline",
                     needs: (*needs).to_owned(),
                 };
                 assert_eq!(error, wanted);

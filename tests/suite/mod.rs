@@ -3,6 +3,7 @@
 mod any_input;
 mod automatic_layout;
 mod backends;
+mod batches;
 mod beside_engine_buffers;
 mod binding_errors;
 mod blending;
@@ -39,6 +40,7 @@ mod front;
 mod geometric_normal;
 mod golden;
 mod hard_cases;
+mod instanced_meshes;
 mod keeping;
 mod kept_origin;
 mod local_reach;
