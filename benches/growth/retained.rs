@@ -1,14 +1,17 @@
 //! Measures frames over a retained set of many casters: nothing moves, the camera walks, some
 //! casters move, all of them move.
 
+use std::time::Instant;
+
 use glam::{DVec3, Vec3};
 use shadow_support::camera;
 use shadow_support::gpu::Gpu;
+use shadow_support::measure::statistics::Spread;
 use shadow_support::mesh::{Mesh, render_space_pipeline};
 use shadow_support::random::Random;
 use wgpu_shadows::{
-    Aabb, CasterId, CasterPipeline, CasterSet, Casters, Coverage, Filter, Revision, ShadowCaster,
-    ShadowFrameDescriptor, ShadowView,
+    Aabb, CameraView, CasterId, CasterPipeline, CasterSet, Casters, Coverage, Filter, Revision,
+    ShadowCaster, ShadowFrameDescriptor, ShadowView,
 };
 
 use super::crowd;
@@ -135,6 +138,7 @@ fn table(title: String) -> Growth {
         &[
             "moving ‰ (-1: camera)",
             "set µs",
+            "of it update µs",
             "allocs",
             "passes",
             "draws",
@@ -162,6 +166,7 @@ fn suns(stage: &Stage<'_>, count: u32) {
         let [of_set, of_list] = &mut suns;
         let mut frame = 0;
         let mut times: [Vec<processor::Effort>; 2] = Default::default();
+        let mut updates = Vec::new();
         // A list of a million casters takes long.
         let with_list = count <= 100_000;
         let mut counts = (0, 0);
@@ -175,19 +180,15 @@ fn suns(stage: &Stage<'_>, count: u32) {
             let eye = Vec3::new(walked, 2.0, 0.0);
             let camera = camera::looking(eye, eye + Vec3::new(9.0, -1.0, 5.0), 0.9);
             let cameras = [camera.with_max_distance(60.0)];
-            let descriptor = |casters| ShadowFrameDescriptor {
-                origin: DVec3::ZERO,
-                coverage: Coverage::Cameras(&cameras),
-                casters,
-                receivers: &[],
-            };
             let mut encoder = Some(stage.gpu.encoder());
             let effort = processor::measure(
                 1,
                 || encoder.take().expect("one call"),
                 |encoder| {
+                    let start = Instant::now();
                     step(&mut set, &ids, motion, frame);
-                    let report = of_set.record(encoder, &descriptor(Casters::Set(&set)));
+                    updates.push(start.elapsed().as_secs_f64() * 1e6);
+                    let report = of_set.record(encoder, &frame_of(&cameras, Casters::Set(&set)));
                     counts = (report.passes, report.draws());
                 },
             );
@@ -196,7 +197,7 @@ fn suns(stage: &Stage<'_>, count: u32) {
                 let list: Vec<&dyn ShadowCaster> = members.iter().map(|m| *m as _).collect();
                 let record = |encoder: &mut wgpu::CommandEncoder| {
                     of_list
-                        .record(encoder, &descriptor(Casters::List(&list)))
+                        .record(encoder, &frame_of(&cameras, Casters::List(&list)))
                         .passes
                 };
                 processor::measure(1, || stage.gpu.encoder(), record)
@@ -215,6 +216,7 @@ fn suns(stage: &Stage<'_>, count: u32) {
             per_mille(motion),
             [
                 effort.microseconds,
+                Spread::of(updates[SETTLING as usize..].iter().copied()).median,
                 effort.allocations,
                 f64::from(counts.0),
                 f64::from(counts.1),
@@ -238,13 +240,16 @@ fn lamps(stage: &Stage<'_>) {
         let mut of_set = Lamps::new(stage.gpu, LAMPS);
         let mut of_list = Lamps::new(stage.gpu, LAMPS);
         let mut times: [Vec<processor::Effort>; 2] = Default::default();
+        let mut updates = Vec::new();
         let mut counts = super::counts::Counts::default();
         for round in 0..SETTLING + stage.repeats {
             let effort = processor::measure(
                 1,
                 || stage.gpu.encoder(),
                 |encoder| {
+                    let start = Instant::now();
                     step(&mut set, &ids, motion, round);
+                    updates.push(start.elapsed().as_secs_f64() * 1e6);
                     counts = of_set.record(encoder, Casters::Set(&set), half);
                 },
             );
@@ -269,6 +274,7 @@ fn lamps(stage: &Stage<'_>) {
             per_mille(motion),
             [
                 effort.microseconds,
+                Spread::of(updates[SETTLING as usize..].iter().copied()).median,
                 effort.allocations,
                 f64::from(counts.passes),
                 f64::from(counts.draws),
@@ -279,13 +285,25 @@ fn lamps(stage: &Stage<'_>) {
     table.print();
 }
 
-/// Moves the casters of a frame; others move in the next.
+/// Returns the descriptor of a frame that cameras see.
+fn frame_of<'d, 'c>(
+    cameras: &'d [CameraView],
+    casters: Casters<'c>,
+) -> ShadowFrameDescriptor<'d, 'c> {
+    ShadowFrameDescriptor {
+        origin: DVec3::ZERO,
+        coverage: Coverage::Cameras(cameras),
+        casters,
+        receivers: &[],
+    }
+}
+
+/// Moves the casters of a frame, the same in each, and tells the set.
 fn step(set: &mut CasterSet<Mover>, ids: &[CasterId], motion: Motion, frame: u32) {
     let Motion::PerMille(share) = motion else {
         return;
     };
     let stride = (1000 / share) as usize;
-    // The same casters move in each frame.
     for &id in ids.iter().step_by(stride) {
         set.update(id, |mover| mover.step(frame))
             .expect("a caster of the set");

@@ -386,3 +386,91 @@ fn half_area(bounds: &Aabb) -> f32 {
     let size = bounds.max - bounds.min;
     size.x * size.y + size.y * size.z + size.z * size.x
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    /// Checks over random insertions, moves and removals that a walk meets every box that overlaps
+    /// a volume, and each at most once, that all links agree, and that the tree stays shallow even
+    /// where boxes come in the order of a grid.
+    #[test]
+    fn walks_meet_all_that_overlaps() {
+        let mut state = 1_u32;
+        let mut random = || {
+            state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+            (state >> 8) as f32 / (1 << 24) as f32
+        };
+        let mut tree = BoundsTree::default();
+        let mut boxes = vec![Aabb::EMPTY; 1500];
+        for step in 0..40_000 {
+            let index = if step < 1500 {
+                step
+            } else {
+                (random() * 1500.0) as usize
+            };
+            let place = if step < 1500 {
+                Vec3::new((step % 39) as f32, 0.0, (step / 39) as f32)
+            } else {
+                Vec3::new(random(), random() * 0.1, random()) * 39.0
+            };
+            let before = boxes[index];
+            let bounds = match (random() * 20.0) as u32 {
+                0 => Aabb::EMPTY,
+                1 | 2 => Aabb::new(place, place),
+                3 => Aabb::new(place - 30.0 * random(), place + 30.0 * random()),
+                _ if before.is_empty() || step < 1500 => Aabb::new(place, place + random()),
+                _ => {
+                    let way = Vec3::new(random() - 0.5, 0.0, random() - 0.5) * 0.4;
+                    Aabb::new(before.min + way, before.max + way)
+                }
+            };
+            tree.set(index as u32, &before, &bounds);
+            boxes[index] = bounds;
+            if step % 10_000 == 9_999 {
+                tree.rebuild(&boxes);
+            }
+            if step % 50 != 0 {
+                continue;
+            }
+            let volume = Aabb::new(place - 3.0 * random(), place + 3.0 * random());
+            let overlap = |a: &Aabb| a.min.cmple(volume.max).all() && a.max.cmpge(volume.min).all();
+            let mut met = Vec::new();
+            tree.walk(
+                &mut met,
+                |_, around| overlap(around),
+                |met, index| met.push(index),
+            );
+            met.sort_unstable();
+            assert!(
+                met.windows(2).all(|pair| pair[0] < pair[1]),
+                "each is met once"
+            );
+            met.retain(|index| overlap(&boxes[*index as usize]));
+            let wanted = (0u32..)
+                .zip(&boxes)
+                .filter(|(_, b)| !b.is_empty() && overlap(b));
+            assert_eq!(
+                met,
+                wanted.map(|(index, _)| index).collect::<Vec<_>>(),
+                "step {step}"
+            );
+        }
+        let depth = |mut node: u32| {
+            let mut depth = 0;
+            while tree.parents[node as usize] != NONE {
+                let parent = tree.parents[node as usize];
+                let above = &tree.nodes[parent as usize];
+                assert!(above.links.contains(&node));
+                assert!(holds(&above.bounds, &tree.nodes[node as usize].bounds));
+                (node, depth) = (parent, depth + 1);
+            }
+            depth
+        };
+        let leaves = tree.leaves.iter().filter(|leaf| **leaf != NONE);
+        let deepest = leaves.map(|leaf| depth(*leaf)).max();
+        // Twice the depth of a tree whose halves are equal is 22.
+        assert!(deepest <= Some(32), "{deepest:?}");
+    }
+}
