@@ -315,7 +315,9 @@ fn pair(caster: &Aabb, (min, max): (DVec3, DVec3), toward_light: DVec3) -> Optio
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::LightAxes;
+    use crate::fit::sun_casters::SunCaster;
+    use crate::fit::visible::SeenBounds;
+    use crate::fit::{Boxes, LightAxes};
     use glam::Vec3;
 
     const DOWNWARD: DVec3 = DVec3::new(0.0, -1.0, 0.0);
@@ -335,16 +337,22 @@ mod tests {
             axes: LightAxes::new(direction, DVec3::Y),
             origin: DVec3::ZERO,
         };
-        let casters = Casters {
-            space: &space,
-            bounds,
-            shapes,
-        };
-        let boxes: Vec<_> = bounds.iter().map(|bounds| space.bounds(bounds)).collect();
+        let listed = (0..).zip(bounds).map(|(index, bounds)| SunCaster {
+            index,
+            light: space.bounds(bounds),
+        });
+        let listed: Vec<_> = listed.collect();
         let mut visible = LightBox::EMPTY;
-        boxes.iter().for_each(|bounds| visible.union(bounds));
+        listed.iter().for_each(|caster| visible.union(&caster.light));
+        let candidates = SunCasters {
+            space: &space,
+            boxes: Boxes { bounds, tree: None },
+            visible: &SeenBounds::NOTHING,
+            divided: &[],
+            listed: &listed,
+        };
         let mut scratch = PartScratch::default();
-        scratch.find(&casters, (0..).zip(boxes), &visible, seen);
+        scratch.find(shapes, &candidates, &visible, seen);
         assert!(scratch.divided.contains(&0), "{:?}", scratch.divided);
         scratch.parts
     }
