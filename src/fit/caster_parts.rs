@@ -320,10 +320,9 @@ fn pair(caster: &Aabb, (min, max): (DVec3, DVec3), toward_light: DVec3) -> Optio
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::LightAxes;
-    use crate::fit::boxes::Boxes;
     use crate::fit::sun_casters::SunCaster;
     use crate::fit::visible::SeenBounds;
+    use crate::fit::{Boxes, LightAxes};
     use glam::Vec3;
 
     const DOWNWARD: DVec3 = DVec3::new(0.0, -1.0, 0.0);
@@ -355,7 +354,7 @@ mod tests {
         let candidates = SunCasters {
             space: &space,
             boxes: Boxes { bounds, tree: None },
-            visible: &SeenBounds::of_boxes(bounds),
+            visible: &SeenBounds::NOTHING,
             divided: &[],
             listed: &listed,
         };
