@@ -1,10 +1,11 @@
 //! Determines which views need drawing this frame, and records the passes that draw them.
 
 use crate::cast::cube_pass::{CubePass, PreparedCubePass};
-use crate::cast::draw_casters::{DrawContext, PassDefaults, draw_casters};
-use crate::cast::draw_list::{DrawCall, DrawLists};
+use crate::cast::draw_casters::DrawContext;
+use crate::cast::draw_list::DrawLists;
 use crate::cast::instance_matrices::InstanceMatrices;
 use crate::cast::layer_cache::{LayerCache, Plan, ViewDraws};
+use crate::cast::layer_pass::LayerPass;
 use crate::cast::rect_clear::rect_clear_pipeline;
 use crate::cast::view_uniform::{CasterViewUniform, VIEW_UNIFORM_BYTES, view_layout};
 use crate::cast::{CLEAR, CasterPipeline, FrameCasters};
@@ -369,55 +370,5 @@ impl Layer {
             self.static_cache_failed = self.static_cache.is_none();
         }
         self.static_cache.is_some()
-    }
-}
-
-/// Records passes over one layer.
-struct LayerPass<'a, 'c> {
-    encoder: &'a mut wgpu::CommandEncoder,
-    label: &'a str,
-    view_group: (&'a wgpu::BindGroup, u32),
-    format: DepthFormat,
-    /// Clears the rectangle of a view that shares its layer with others.
-    rect_clear: Option<&'a wgpu::RenderPipeline>,
-    context: DrawContext<'a, 'c>,
-}
-
-impl LayerPass<'_, '_> {
-    fn draw(
-        &mut self,
-        target: &wgpu::TextureView,
-        load: wgpu::LoadOp<f32>,
-        calls: &[DrawCall<'_>],
-    ) {
-        // The texels of the other views in the layer are kept.
-        let attachment_load = match self.rect_clear {
-            Some(_) => wgpu::LoadOp::Load,
-            None => load,
-        };
-        let mut pass = self.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some(self.label),
-            color_attachments: &[],
-            depth_stencil_attachment: Some(super::depth_attachment(target, attachment_load)),
-            timestamp_writes: None,
-            occlusion_query_set: None,
-            multiview_mask: None,
-        });
-        let (group, offset) = self.view_group;
-        let defaults = PassDefaults {
-            view_group: group,
-            offsets: &[offset],
-            texels: self.context.view.texels(),
-        };
-        if let (Some(pipeline), wgpu::LoadOp::Clear(_)) = (self.rect_clear, load) {
-            defaults.set_rect(&mut pass);
-            pass.set_pipeline(pipeline);
-            pass.draw(0..3, 0..1);
-        }
-        // The planning of the frame has checked that there is a pipeline for the format.
-        let format = self.format;
-        draw_casters(&mut pass, &defaults, &self.context, calls, |pipeline| {
-            pipeline.wgpu_pipeline(format)
-        });
     }
 }

@@ -86,7 +86,7 @@ impl ShadowScene {
     /// Checks a frame and collects the bounds of its casters, once for all lights that are recorded
     /// with it. The methods of every caster but [`pipeline`](ShadowCaster::pipeline) and
     /// [`draw`](ShadowCaster::draw) are called here; while the lights are recorded, only these two
-    /// are called.
+    /// and [`instances`](ShadowCaster::instances) are called.
     ///
     /// # Errors
     /// Returns [`ShadowError`] for an origin that is not finite, for a camera whose matrices are
