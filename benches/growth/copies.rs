@@ -167,8 +167,8 @@ impl BarePass {
 /// Compares boxes of one mesh, all of them in the map and all of it drawn, with one instanced draw.
 pub fn beside_one_draw(stage: &Stage<'_>) {
     println!(
-        "\nsun, {MAP_SIZE} texels a side: copies of one box beside one bare instanced draw of the same (device time), and `frame` \
-         and `record` on the CPU"
+        "\nsun, {MAP_SIZE} texels a side: copies of one box beside one bare instanced draw of the \
+         same (device time), and `frame` and `record` on the CPU"
     );
     for count in [100, 1_000, 10_000] {
         let half = crowd::half_side(count);
@@ -214,8 +214,9 @@ pub fn beside_one_draw(stage: &Stage<'_>) {
                 |encoder| bare.draw(encoder, &copies),
             );
             println!(
-                "{count:>8} copies as {name}: {seen} in the map, {draws} draw calls, {:.3} times the bare draw (middle half {:.3} to \
-                 {:.3}); drawn {:.0} µs and {} allocations, kept {:.0} µs and {}",
+                "{count:>8} copies as {name}: {seen} in the map, {draws} draw calls, {:.3} times \
+                 the bare draw (middle half {:.3} to {:.3}); drawn {:.0} µs and {} allocations, \
+                 kept {:.0} µs and {}",
                 ratio.median,
                 ratio.lower_quartile,
                 ratio.upper_quartile,

@@ -8,8 +8,8 @@ use crate::{Aabb, ShadowView};
 ///
 /// [`ShadowScene::frame`](crate::ShadowScene::frame) calls every method but
 /// [`pipeline`](ShadowCaster::pipeline) and [`draw`](ShadowCaster::draw) once, for all lights of
-/// the frame. Those two are called for each pass that the caster takes part in. Within a pass
-/// casters are drawn in any order.
+/// the frame. Those two, or [`instances`](ShadowCaster::instances) in their place, are called for
+/// each pass that the caster takes part in. Within a pass casters are drawn in any order.
 pub trait ShadowCaster {
     /// Returns the bounds, in render space and world units, of everything that
     /// [`ShadowCaster::draw`] may draw, displacement included. The bounds are used to fit the maps

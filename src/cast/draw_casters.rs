@@ -53,11 +53,11 @@ struct Bound<'a> {
 }
 
 /// Makes draw calls one after the other. Each caster of the engine's own finds its pipeline, bind
-/// group 0, the view's rectangle as viewport and scissor rectangle, and depths from 0 to 1, whatever
-/// the caster before it has set. They are set again only after a caster that may have changed them:
-/// in software, setting bind group and scissor rectangle costs several times what a small draw
-/// costs. `variant` returns the one of a caster's pipelines that matches the pass; a call for which
-/// it returns `None` is left out.
+/// group 0, the view's rectangle as viewport and scissor rectangle, and depths from 0 to 1,
+/// whatever the caster before it has set. They are set again only after a caster that may have
+/// changed them: in software, setting bind group and scissor rectangle costs several times what a
+/// small draw costs. `variant` returns the one of a caster's pipelines that matches the pass; a
+/// call for which it returns `None` is left out.
 pub(crate) fn draw_casters<'c>(
     pass: &mut wgpu::RenderPass<'_>,
     defaults: &PassDefaults<'_>,

@@ -22,6 +22,35 @@ use crate::{Aabb, ShadowView};
 /// that sees ten of ten thousand draws ten. The copies that a view sees are drawn in one call. A
 /// change of some transforms costs what they are, not what the caster holds.
 ///
+/// ```
+/// use wgpu_shadows::caster::{InstancedMeshCasterDescriptor, MeshIndices};
+/// use wgpu_shadows::{Aabb, CasterPipeline, InstancedMeshCaster, error::CasterError};
+/// use wgpu_shadows::{glam::Mat4, wgpu};
+///
+/// /// Makes a forest of one tree, whose vertices need no indices.
+/// fn forest(
+///     device: &wgpu::Device,
+///     pipeline: &CasterPipeline,
+///     (tree, vertex_count, bounds_model): (&wgpu::Buffer, u32, Aabb),
+///     render_from_model: &[Mat4],
+/// ) -> Result<InstancedMeshCaster, CasterError> {
+///     let descriptor = InstancedMeshCasterDescriptor {
+///         label: Some("forest"),
+///         pipeline,
+///         vertices: tree,
+///         indices: MeshIndices::None { vertices: 0..vertex_count },
+///         bounds_model,
+///         render_from_model,
+///     };
+///     InstancedMeshCaster::new(device, &descriptor)
+/// }
+///
+/// /// Lets one tree of it sway.
+/// fn sway(forest: &mut InstancedMeshCaster, index: usize, to: Mat4) -> Result<(), CasterError> {
+///     forest.set_transforms(index, &[to])
+/// }
+/// ```
+///
 /// For matrices that only the device knows, and for copies that differ in more than a matrix, an
 /// engine implements [`ShadowCaster`] itself and draws from a buffer of its own.
 #[derive(Debug)]

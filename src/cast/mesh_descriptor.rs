@@ -34,7 +34,8 @@ pub enum MeshIndices {
 /// [`MeshCaster::new`](crate::MeshCaster::new) checks it.
 #[derive(Clone, Debug)]
 pub struct MeshCasterDescriptor<'a> {
-    /// Is the label of the buffer that is made where the mesh is drawn by itself; "shadow mesh caster" if `None`.
+    /// Is the label of the buffer that is made where the mesh is drawn by itself; "shadow mesh
+    /// caster" if `None`.
     pub label: wgpu::Label<'a>,
     /// Is a pipeline made on the same device, normally with the built-in vertex stage. Where it
     /// culls and the transform mirrors, its counterpart of the other winding is used. A pipeline
@@ -75,7 +76,7 @@ pub struct InstancedMeshCasterDescriptor<'a> {
     pub bounds_model: Aabb,
     /// Holds one transform to render space from model space for each copy, affine and with entries
     /// that take the bounds to finite ones. A copy with another transform has no shadow, and
-    /// [`ShadowFrame::broken_bounds`](crate::ShadowFrame::broken_bounds) names it in each frame. The
-    /// list may be empty.
+    /// [`ShadowFrame::broken_bounds`](crate::ShadowFrame::broken_bounds) names it in each frame.
+    /// The list may be empty.
     pub render_from_model: &'a [Mat4],
 }

@@ -14,10 +14,12 @@
 //! caster_limits.rs       what pipelines and passes need of a device's limits
 //! view_uniform.rs        the uniforms of a view in a vertex stage
 //! mesh.rs                MeshCaster: a ready-made caster; instanced_mesh.rs: InstancedMeshCaster
-//! mesh_descriptor.rs     what they are made of; mesh_check.rs, mesh_geometry.rs: their checks and buffers
+//! mesh_descriptor.rs     what they are made of; mesh_check.rs: their checks
+//! mesh_geometry.rs       their pipeline and buffers
 //! closed.rs              which meshes are closed solids; mesh_shape.rs: which cannot shadow themselves
 //! layer_cache.rs         what a layer caches, and what a frame must draw
-//! recorder.rs            the passes; shared_layer.rs: how parts of a layer are cleared and copied
+//! recorder.rs            the passes; layer_pass.rs: one of them
+//! shared_layer.rs        how parts of a layer are cleared and copied
 //! draw_list.rs           the draw calls of the passes, one for all instances of equal geometry
 //! instance_matrices.rs   the matrices that these draw
 //! draw_casters.rs        the loop that makes the draw calls
@@ -39,6 +41,7 @@ mod instance_matrices;
 mod instanced_mesh;
 mod instances;
 mod layer_cache;
+mod layer_pass;
 mod mesh;
 mod mesh_check;
 mod mesh_descriptor;

@@ -1,13 +1,14 @@
 //! Determines which views need drawing this frame, and records the passes that draw them.
 
 use crate::cast::cube_pass::{CubePass, PreparedCubePass};
-use crate::cast::draw_casters::{DrawContext, PassDefaults, draw_casters};
-use crate::cast::draw_list::{DrawCall, DrawLists};
+use crate::cast::draw_casters::DrawContext;
+use crate::cast::draw_list::DrawLists;
 use crate::cast::instance_matrices::InstanceMatrices;
 use crate::cast::layer_cache::{LayerCache, Plan, ViewDraws};
+use crate::cast::layer_pass::{Before, LayerPass};
 use crate::cast::shared_layer::SharedLayer;
 use crate::cast::view_uniform::{CasterViewUniform, VIEW_UNIFORM_BYTES, view_layout};
-use crate::cast::{CLEAR, CasterPipeline, FrameCasters};
+use crate::cast::{CasterPipeline, FrameCasters};
 use crate::error::DeviceError;
 use crate::gpu::{DepthFormat, DepthMap, Upload, UploadBuffer, capture_device_errors};
 use crate::{ShadowError, ShadowView};
@@ -385,62 +386,5 @@ impl Layer {
             self.static_cache_failed = self.static_cache.is_none();
         }
         self.static_cache.is_some()
-    }
-}
-
-/// States what a view holds before its casters are drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Before {
-    /// It holds nothing.
-    Clear,
-    /// It holds the static casters, which have been copied into a layer that is the view's alone,
-    /// and are copied into a shared one by the pass.
-    StaticCasters,
-}
-
-/// Records passes over one layer.
-struct LayerPass<'a, 'c> {
-    encoder: &'a mut wgpu::CommandEncoder,
-    label: &'a str,
-    view_group: (&'a wgpu::BindGroup, u32),
-    format: DepthFormat,
-    /// Is present where the view shares its layer with others.
-    shared_layer: Option<&'a SharedLayer>,
-    context: DrawContext<'a, 'c>,
-}
-
-impl LayerPass<'_, '_> {
-    fn draw(&mut self, target: &wgpu::TextureView, before: Before, calls: &[DrawCall<'_>]) {
-        // A shared layer keeps the texels of its other views.
-        let load = match (self.shared_layer, before) {
-            (None, Before::Clear) => CLEAR,
-            (Some(_), _) | (None, Before::StaticCasters) => wgpu::LoadOp::Load,
-        };
-        let mut pass = self.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some(self.label),
-            color_attachments: &[],
-            depth_stencil_attachment: Some(super::depth_attachment(target, load)),
-            timestamp_writes: None,
-            occlusion_query_set: None,
-            multiview_mask: None,
-        });
-        let (group, offset) = self.view_group;
-        let defaults = PassDefaults {
-            view_group: group,
-            offsets: &[offset],
-            texels: self.context.view.texels(),
-        };
-        if let Some(shared) = self.shared_layer {
-            defaults.set_rect(&mut pass);
-            match before {
-                Before::Clear => shared.clear(&mut pass),
-                Before::StaticCasters => shared.copy_static_casters(&mut pass),
-            }
-        }
-        // The planning of the frame has checked that there is a pipeline for the format.
-        let format = self.format;
-        draw_casters(&mut pass, &defaults, &self.context, calls, |pipeline| {
-            pipeline.wgpu_pipeline(format)
-        });
     }
 }

@@ -111,8 +111,8 @@ impl ShadowScene {
     /// Checks a frame and collects the bounds of its casters, once for all lights that are recorded
     /// with it. The methods of every caster of a list but
     /// [`pipeline`](crate::ShadowCaster::pipeline) and [`draw`](crate::ShadowCaster::draw) are
-    /// called here; while the lights are recorded, only these two are called. Of a set, none is
-    /// called here.
+    /// called here; while the lights are recorded, only these two and
+    /// [`instances`](crate::ShadowCaster::instances) are called. Of a set, none is called here.
     ///
     /// # Errors
     /// Returns [`ShadowError`] for an origin that is not finite, for a camera whose matrices are
