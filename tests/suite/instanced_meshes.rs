@@ -5,9 +5,10 @@ use shadow_support::camera::Camera;
 use shadow_support::mesh::{Mesh, render_space_pipeline};
 use shadow_support::random::Random;
 use wgpu_shadows::{
-    Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    InstancedMeshCaster, ShadowCaster, caster::CasterPipelineDescriptor, error::CasterError,
-    report::BrokenBounds, report::ViewStatus,
+    Aabb, CasterPipeline, CasterSet, Casters, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, InstancedMeshCaster, ShadowCaster, ShadowFrameDescriptor,
+    ShadowScene, caster::CasterPipelineDescriptor, error::CasterError, report::BrokenBounds,
+    report::ViewStatus,
 };
 
 use crate::fixtures::copies::{Alone, Shared, scattered};
@@ -321,4 +322,70 @@ fn what_copies_refuse() {
         .expect_err("a pipeline of another device");
     let field = "InstancedMeshCasterDescriptor::pipeline";
     assert_eq!(error, CasterError::OtherDevice { field });
+}
+
+/// Copies of a mesh in a set give the same views, draw calls and maps as in a list, while copies
+/// come, go and move, and while their caster is removed and inserted again.
+#[test]
+fn copies_in_a_set_are_those_in_a_list() {
+    let gpu = vulkan();
+    let pipeline = default_pipeline(gpu);
+    let ground = Mesh::floor(0.0, 60.0).caster(gpu, &pipeline, Mat4::IDENTITY);
+    let mut random = Random::new(23);
+    let start = scattered(&mut random, 12, 20.0);
+    let mut listed = cube(gpu).instanced(gpu, &pipeline, &start);
+    let mut set: CasterSet<InstancedMeshCaster> = CasterSet::new();
+    let other = cube(gpu).instanced(gpu, &pipeline, &start);
+    let ground_copy = Shared::new(gpu, &Mesh::floor(0.0, 60.0));
+    set.insert(ground_copy.instanced(gpu, &pipeline, &[Mat4::IDENTITY]));
+    let mut id = set.insert(other);
+    let (mut of_set, mut of_list) = (cascades(gpu), cascades(gpu));
+    let bytes = [&of_set, &of_list].map(|sun| TextureBytes::new(gpu, sun.maps().texture()));
+    let (mut set_scene, mut list_scene) = (ShadowScene::new(), ShadowScene::new());
+    let camera = Camera::modern(DVec3::new(0.0, 5.0, 25.0), DVec3::ZERO, 0.9, 1.5);
+    let cameras = [camera.view().with_max_distance(80.0)];
+    let light = DirectionalLight::new(Vec3::new(0.3, -1.0, 0.2));
+    let mut drawn = 0;
+    for frame in 0..120 {
+        let step = random.index(6);
+        let some = scattered(&mut random, 3, 20.0);
+        let index = random.index(listed.len().max(1));
+        let change = |copies: &mut InstancedMeshCaster| {
+            // A change that is refused because there are too few copies is none.
+            match step {
+                0 => copies.push(&some).expect("few copies"),
+                1 => drop(copies.swap_remove(index)),
+                2 => drop(copies.set_transforms(index, &some[..1])),
+                3 if frame % 20 == 0 => copies.clear(),
+                _ => {}
+            }
+        };
+        change(&mut listed);
+        set.update(id, change).expect("a known caster");
+        if frame % 17 == 0 {
+            let taken = set.remove(id).ok().expect("a known caster");
+            id = set.insert(taken);
+        }
+        let list: [&dyn ShadowCaster; 2] = [&ground, &listed];
+        let descriptor = |casters| ShadowFrameDescriptor {
+            origin: DVec3::ZERO,
+            coverage: wgpu_shadows::Coverage::Cameras(&cameras),
+            casters,
+            receivers: &[],
+        };
+        let mut encoder = gpu.encoder();
+        let frame_of_set = set_scene.frame(&descriptor(Casters::Set(&set)));
+        let report = of_set.record(&mut encoder, &frame_of_set.expect("a valid frame"), &light);
+        let set_report = report.expect("a valid light").clone();
+        let frame_of_list = list_scene.frame(&descriptor(Casters::List(&list)));
+        let report = of_list.record(&mut encoder, &frame_of_list.expect("a valid frame"), &light);
+        let list_report = report.expect("a valid light").clone();
+        assert_eq!(set_report, list_report, "frame {frame}");
+        bytes.each_ref().map(|bytes| bytes.copy(&mut encoder));
+        gpu.submit(encoder);
+        let [now, wanted] = bytes.each_ref().map(|bytes| bytes.read(gpu));
+        assert!(now == wanted, "frame {frame}");
+        drawn += set_report.draws();
+    }
+    assert!(drawn > 100, "{drawn}");
 }
