@@ -18,8 +18,8 @@ use glam::{DVec3, Mat4, Vec3};
 use shadow_support::gpu::{Gpu, GpuRequest};
 use shadow_support::readback;
 use wgpu_shadows::{
-    CasterPipeline, Coverage, DirectionalLight, DirectionalShadow, MeshCaster, OmniLight,
-    OmniShadow, ShadowCaster, Casters, ShadowFrameDescriptor, ShadowScene, caster::CasterPipelineDescriptor,
+    CasterPipeline, Casters, Coverage, DirectionalLight, DirectionalShadow, MeshCaster, OmniLight,
+    OmniShadow, ShadowCaster, ShadowFrameDescriptor, ShadowScene, caster::CasterPipelineDescriptor,
     caster::CasterVertex, caster::ModelTransform, caster::PositionAttribute, shader,
 };
 

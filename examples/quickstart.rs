@@ -11,9 +11,9 @@ use glam::camera::rh::{proj::directx::perspective_infinite_reverse, view::look_a
 use glam::{DVec3, Mat4, Vec3};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu_shadows::{
-    Aabb, CameraView, CasterPipeline, Coverage, DirectionalLight, DirectionalShadow,
+    Aabb, CameraView, CasterPipeline, Casters, Coverage, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, MeshCaster, ShadowBindings, ShadowBindingsDescriptor,
-    ShadowCaster, Casters, ShadowFrameDescriptor, ShadowScene, caster::CasterPipelineDescriptor,
+    ShadowCaster, ShadowFrameDescriptor, ShadowScene, caster::CasterPipelineDescriptor,
     caster::MeshCasterDescriptor, caster::MeshIndices,
 };
 

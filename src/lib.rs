@@ -272,9 +272,7 @@ mod receive;
 pub mod shader;
 
 pub use aabb::Aabb;
-pub use cast::{
-    CasterId, CasterPipeline, CasterSet, Casters, MeshCaster, Revision, ShadowCaster,
-};
+pub use cast::{CasterId, CasterPipeline, CasterSet, Casters, MeshCaster, Revision, ShadowCaster};
 pub use error::ShadowError;
 pub use fit::{CameraView, CascadeLayout, CascadeSplit, ShadowView, Stability};
 pub use gpu::DepthFormat;

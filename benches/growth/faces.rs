@@ -9,8 +9,8 @@ use shadow_support::measure::statistics::Spread;
 use shadow_support::mesh::Mesh;
 use shadow_support::random::Random;
 use wgpu_shadows::{
-    Aabb, CasterPipeline, Coverage, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor,
-    Revision, ShadowCaster, Casters, ShadowFrameDescriptor, ShadowScene, ShadowView,
+    Aabb, CasterPipeline, Casters, Coverage, MeshCaster, OmniLight, OmniShadow,
+    OmniShadowDescriptor, Revision, ShadowCaster, ShadowFrameDescriptor, ShadowScene, ShadowView,
     caster::CasterPipelineDescriptor, caster::MeshCasterDescriptor, caster::MeshIndices,
     report::ShadowReport,
 };

@@ -10,8 +10,8 @@ use shadow_support::measure::statistics::Spread;
 use shadow_support::mesh::{Mesh, render_space_pipeline};
 use shadow_support::random::Random;
 use wgpu_shadows::{
-    Aabb, CameraView, CasterId, CasterPipeline, CasterSet, Casters, Coverage, Filter, Revision, ShadowCaster,
-    ShadowFrameDescriptor, ShadowView,
+    Aabb, CameraView, CasterId, CasterPipeline, CasterSet, Casters, Coverage, Filter, Revision,
+    ShadowCaster, ShadowFrameDescriptor, ShadowView,
 };
 
 use super::crowd;
@@ -172,7 +172,11 @@ fn suns(stage: &Stage<'_>, count: u32) {
         let mut counts = (0, 0);
         for round in 0..SETTLING + stage.repeats {
             frame += 1;
-            let walked = if motion == Motion::Walk { 0.1 * frame as f32 } else { 0.0 };
+            let walked = if motion == Motion::Walk {
+                0.1 * frame as f32
+            } else {
+                0.0
+            };
             let eye = Vec3::new(walked, 2.0, 0.0);
             let camera = camera::looking(eye, eye + Vec3::new(9.0, -1.0, 5.0), 0.9);
             let cameras = [camera.with_max_distance(60.0)];
@@ -192,7 +196,9 @@ fn suns(stage: &Stage<'_>, count: u32) {
                 let members: Vec<&Mover> = ids.iter().filter_map(|id| set.get(*id)).collect();
                 let list: Vec<&dyn ShadowCaster> = members.iter().map(|m| *m as _).collect();
                 let record = |encoder: &mut wgpu::CommandEncoder| {
-                    of_list.record(encoder, &frame_of(&cameras, Casters::List(&list))).passes
+                    of_list
+                        .record(encoder, &frame_of(&cameras, Casters::List(&list)))
+                        .passes
                 };
                 processor::measure(1, || stage.gpu.encoder(), record)
             });
@@ -202,7 +208,10 @@ fn suns(stage: &Stage<'_>, count: u32) {
             }
         }
         let [set_times, list_times] = times;
-        let (effort, list) = (processor::median(&set_times), processor::median(&list_times));
+        let (effort, list) = (
+            processor::median(&set_times),
+            processor::median(&list_times),
+        );
         table.add(
             per_mille(motion),
             [
@@ -257,7 +266,10 @@ fn lamps(stage: &Stage<'_>) {
             }
         }
         let [set_times, list_times] = times;
-        let (effort, list) = (processor::median(&set_times), processor::median(&list_times));
+        let (effort, list) = (
+            processor::median(&set_times),
+            processor::median(&list_times),
+        );
         table.add(
             per_mille(motion),
             [
@@ -293,6 +305,7 @@ fn step(set: &mut CasterSet<Mover>, ids: &[CasterId], motion: Motion, frame: u32
     };
     let stride = (1000 / share) as usize;
     for &id in ids.iter().step_by(stride) {
-        set.update(id, |mover| mover.step(frame)).expect("a caster of the set");
+        set.update(id, |mover| mover.step(frame))
+            .expect("a caster of the set");
     }
 }

@@ -6,8 +6,9 @@ use shadow_support::clock::Clock;
 use shadow_support::gpu::Gpu;
 use shadow_support::measure::statistics::Spread;
 use wgpu_shadows::{
-    CameraView, Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter,
-    ShadowCaster, Casters, ShadowFrameDescriptor, ShadowScene, report::ShadowReport,
+    CameraView, Casters, Coverage, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, Filter, ShadowCaster, ShadowFrameDescriptor, ShadowScene,
+    report::ShadowReport,
 };
 
 use super::processor;

@@ -10,9 +10,9 @@ use glam::{DVec3, Vec3};
 use shadow_support::gpu::Gpu;
 use shadow_support::readback;
 use wgpu_shadows::{
-    Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, ShadowBindings,
-    ShadowBindingsDescriptor, ShadowCaster, Casters, ShadowFrameDescriptor, ShadowScene, debug::DebugImage,
-    report::ShadowReport,
+    Casters, Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowFrameDescriptor, ShadowScene,
+    debug::DebugImage, report::ShadowReport,
 };
 
 use crate::density::Density;

@@ -6,8 +6,8 @@ use std::fmt::Write;
 use example_support::gltf_file::scene::{Light, LightKind, Scene};
 use shadow_support::gpu::Gpu;
 use wgpu_shadows::{
-    Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniLight,
-    ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, Casters, ShadowFrameDescriptor, ShadowMaps,
+    Casters, Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniLight,
+    ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowFrameDescriptor, ShadowMaps,
     ShadowScene, SpotLight, pool::OmniShadowPool, pool::PoolDescriptor, pool::PoolLight,
     pool::ShadowSlot, pool::SpotShadowPool, report::ShadowReport,
 };

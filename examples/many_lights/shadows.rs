@@ -5,8 +5,8 @@ use std::error::Error;
 use example_support::camera::Camera;
 use glam::DVec3;
 use wgpu_shadows::{
-    Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, ShadowBindings,
-    ShadowBindingsDescriptor, ShadowCaster, Casters, ShadowFrameDescriptor, ShadowScene,
+    Casters, Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowFrameDescriptor, ShadowScene,
     pool::OmniShadowPool, pool::PoolDescriptor, pool::PoolLight, pool::ShadowSlot,
     pool::SpotShadowPool, report::ShadowReport,
 };

@@ -8,8 +8,8 @@ use glam::{DVec3, Vec3};
 use shadow_support::gpu::Gpu;
 use shadow_support::readback;
 use wgpu_shadows::{
-    Coverage, Filter, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowBindings,
-    ShadowBindingsDescriptor, ShadowCaster, ShadowError, Casters, ShadowFrameDescriptor, ShadowScene,
+    Casters, Coverage, Filter, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowBindings,
+    ShadowBindingsDescriptor, ShadowCaster, ShadowError, ShadowFrameDescriptor, ShadowScene,
     debug::DebugImage, report::ShadowReport,
 };
 

@@ -36,7 +36,7 @@ use example_support::{arguments, map_picture, picture};
 use glam::DVec3;
 use shadow_support::gpu::{Gpu, GpuRequest};
 use wgpu_shadows::{
-    DirectionalShadow, ShadowCaster, Casters, ShadowFrameDescriptor, ShadowScene, debug::DebugImage,
+    Casters, DirectionalShadow, ShadowCaster, ShadowFrameDescriptor, ShadowScene, debug::DebugImage,
 };
 
 use lookup::Lookup;

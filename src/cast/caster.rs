@@ -8,8 +8,8 @@ use crate::{Aabb, ShadowView};
 /// in it changes.
 ///
 /// Two frames share one depth render of a view if the view's casters have equal revisions, in
-/// whatever order, and its fit is unchanged. Whatever changes a pixel of the depth map must change the
-/// version: vertices, world transform, bones, alpha texture, pipeline. A move of the engine's
+/// whatever order, and its fit is unchanged. Whatever changes a pixel of the depth map must change
+/// the version: vertices, world transform, bones, alpha texture, pipeline. A move of the engine's
 /// `origin` alone needs no new version. A version that stays the same while the geometry changes
 /// leaves a stale shadow behind; a version that changes without need costs a depth pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -55,7 +55,8 @@ impl Revision {
 ///
 /// [`ShadowScene::frame`](crate::ShadowScene::frame) calls every method but
 /// [`pipeline`](ShadowCaster::pipeline) and [`draw`](ShadowCaster::draw) once, for all lights of
-/// the frame. Those two are called for each pass that the caster takes part in.
+/// the frame, unless the caster is in a [`CasterSet`](crate::CasterSet), which calls them when the
+/// caster is inserted or updated. Those two are called for each pass that the caster takes part in.
 pub trait ShadowCaster {
     /// Returns the bounds, in render space and world units, of everything that
     /// [`ShadowCaster::draw`] may draw, displacement included. The bounds are used to fit the maps

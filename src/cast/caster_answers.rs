@@ -57,10 +57,8 @@ impl CasterAnswer {
 pub(crate) struct Content {
     /// Identifies the answers in the process.
     source: u64,
-    /// Counts the changes of what the fit uses.
-    fit: u64,
-    /// Counts all changes.
-    all: u64,
+    /// Counts the changes.
+    changes: u64,
     /// Counts the frames in which a caster may always look different; 0 where there is none.
     frame: u64,
 }
@@ -115,8 +113,7 @@ impl CasterAnswers {
             always_changing: 0,
             content: Content {
                 source: NEXT_SOURCE.fetch_add(1, Ordering::Relaxed),
-                fit: 0,
-                all: 0,
+                changes: 0,
                 frame: 0,
             },
         }
@@ -142,7 +139,13 @@ impl CasterAnswers {
         if !is_sound {
             self.broken.insert(index, bounds);
         }
-        let role = |has_it: bool| if has_it && is_sound { bounds } else { Aabb::EMPTY };
+        let role = |has_it: bool| {
+            if has_it && is_sound {
+                bounds
+            } else {
+                Aabb::EMPTY
+            }
+        };
         self.write(
             index,
             (role(answer.casts), role(answer.receives)),
@@ -172,8 +175,7 @@ impl CasterAnswers {
             let gone = self.facts.drain(count..);
             self.always_changing -= gone.filter(|facts| facts.revision.is_none()).count();
             self.broken.split_off(&(count as u32));
-            self.content.fit += 1;
-            self.content.all += 1;
+            self.content.changes += 1;
         }
     }
 
@@ -181,7 +183,9 @@ impl CasterAnswers {
     pub fn rebuild_tree(&mut self) {
         if let Some(tree) = &mut self.tree {
             let all = self.casts.iter().zip(&self.receives);
-            let all: Vec<Aabb> = all.map(|(casts, receives)| either(casts, receives)).collect();
+            let all: Vec<Aabb> = all
+                .map(|(casts, receives)| either(casts, receives))
+                .collect();
             tree.rebuild(&all);
         }
     }
@@ -200,27 +204,24 @@ impl CasterAnswers {
             self.receives.push(receives);
             self.shapes.push(shape);
             self.facts.push(facts);
-            self.content.fit += 1;
-            self.content.all += 1;
+            self.content.changes += 1;
             self.follow(index, &Aabb::EMPTY, &either(&casts, &receives));
             return;
         }
-        let changes_fit = self.casts[at] != casts
-            || self.receives[at] != receives
-            || self.shapes[at] != shape;
+        let changes_fit =
+            self.casts[at] != casts || self.receives[at] != receives || self.shapes[at] != shape;
         if changes_fit {
             let before = either(&self.casts[at], &self.receives[at]);
             self.casts[at] = casts;
             self.receives[at] = receives;
             self.shapes[at] = shape;
-            self.content.fit += 1;
-            self.content.all += 1;
+            self.content.changes += 1;
             self.follow(index, &before, &either(&casts, &receives));
         }
         self.always_changing -= usize::from(self.facts[at].revision.is_none());
         if self.facts[at] != facts {
             self.facts[at] = facts;
-            self.content.all += 1;
+            self.content.changes += 1;
         }
     }
 

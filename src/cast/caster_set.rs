@@ -49,7 +49,10 @@ mod sealed {
     use crate::cast::caster_answers::{CasterAnswers, Content};
 
     /// Is what a frame needs of a set.
-    #[expect(private_interfaces, reason = "the trait cannot be named outside the crate")]
+    #[expect(
+        private_interfaces,
+        reason = "the trait cannot be named outside the crate"
+    )]
     pub trait Retained {
         fn answers(&self) -> &CasterAnswers;
         /// Returns the number of the state of a frame that begins.
@@ -173,7 +176,10 @@ impl<C: ShadowCaster> CasterSet<C> {
             field: "id",
             index: id.index,
         };
-        let member = self.slots.get_mut(id.index as usize).and_then(Option::as_mut);
+        let member = self
+            .slots
+            .get_mut(id.index as usize)
+            .and_then(Option::as_mut);
         let Some(member) = member.filter(|member| member.ticket == id.ticket) else {
             return Err(unknown);
         };
@@ -245,7 +251,10 @@ impl<C: ShadowCaster> CasterSet<C> {
 
 impl<C: ShadowCaster> RetainedCasters for CasterSet<C> {}
 
-#[expect(private_interfaces, reason = "the trait cannot be named outside the crate")]
+#[expect(
+    private_interfaces,
+    reason = "the trait cannot be named outside the crate"
+)]
 impl<C: ShadowCaster> sealed::Retained for CasterSet<C> {
     fn answers(&self) -> &CasterAnswers {
         &self.answers

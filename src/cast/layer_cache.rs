@@ -151,7 +151,10 @@ impl LayerCache {
     fn holds(&self, draws: &ViewDraws, now: &[Drawn]) -> bool {
         self.is_kept_view(draws)
             && self.drawn.len() == now.len()
-            && now.iter().zip(&self.drawn).all(|(now, was)| now.is_same(was))
+            && now
+                .iter()
+                .zip(&self.drawn)
+                .all(|(now, was)| now.is_same(was))
     }
 
     /// Returns what `draws` needs. `can_copy` is false where layers cannot be copied.
@@ -202,7 +205,10 @@ impl LayerCache {
     /// Returns whether the static-caster cache holds a caster of this revision.
     pub fn is_static(&self, revision: Option<Revision>) -> bool {
         let casters = &self.static_cache.casters;
-        revision.is_some() && casters.binary_search_by_key(&revision, |c| c.revision).is_ok()
+        revision.is_some()
+            && casters
+                .binary_search_by_key(&revision, |c| c.revision)
+                .is_ok()
     }
 
     /// Takes note of the order of the casters of a view that is kept.
@@ -214,7 +220,10 @@ impl LayerCache {
 
     fn note_order(&mut self, draws: &ViewDraws, casters: &FrameCasters<'_>) {
         self.in_order.clear();
-        let revisions = draws.casters.iter().map(|&index| casters.facts(index).revision);
+        let revisions = draws
+            .casters
+            .iter()
+            .map(|&index| casters.facts(index).revision);
         self.in_order.extend(revisions);
     }
 

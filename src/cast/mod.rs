@@ -45,8 +45,8 @@ mod view_uniform;
 
 pub use caster::{Revision, ShadowCaster};
 pub(crate) use caster_answers::{CasterAnswers, Content};
-pub use caster_set::{CasterId, CasterSet, Casters, RetainedCasters};
 pub(crate) use caster_limits::caster_group;
+pub use caster_set::{CasterId, CasterSet, Casters, RetainedCasters};
 pub use closed::is_closed_solid;
 pub use frame_casters::BrokenBounds;
 pub(crate) use frame_casters::{FrameCasters, sound_bounds};

@@ -86,7 +86,9 @@ impl BoundsTree {
         self.leaves.resize(bounds.len(), NONE);
         self.escapes.clear();
         self.escapes.resize(bounds.len(), 0);
-        let indices = (0u32..).zip(bounds).filter(|(_, bounds)| !bounds.is_empty());
+        let indices = (0u32..)
+            .zip(bounds)
+            .filter(|(_, bounds)| !bounds.is_empty());
         let mut members: Vec<(u32, Aabb)> = indices.map(|(index, b)| (index, *b)).collect();
         self.root = if members.is_empty() {
             NONE
@@ -103,7 +105,9 @@ impl BoundsTree {
             return node;
         }
         let middle = |bounds: &Aabb| bounds.min + bounds.max;
-        let bounds = members.iter().fold(Aabb::EMPTY, |all, (_, b)| join(&all, b));
+        let bounds = members
+            .iter()
+            .fold(Aabb::EMPTY, |all, (_, b)| join(&all, b));
         let middles = Aabb::from_points(members.iter().map(|(_, bounds)| middle(bounds)));
         let axis = (middles.max - middles.min).max_position();
         let half = members.len() / 2;
@@ -322,8 +326,8 @@ impl BoundsTree {
             let [a, b] = keeper.links;
             for (rises, stays) in [(a, b), (b, a)] {
                 let (sinking, staying) = (&self.nodes[sinks as usize], &self.nodes[stays as usize]);
-                let saved = half_area(&keeper.bounds)
-                    - half_area(&join(&sinking.bounds, &staying.bounds));
+                let saved =
+                    half_area(&keeper.bounds) - half_area(&join(&sinking.bounds, &staying.bounds));
                 if saved > best.map_or(0.0, |(most, _)| most) {
                     best = Some((saved, [sinks, keeps, rises, stays]));
                 }
@@ -351,10 +355,7 @@ impl BoundsTree {
 fn ahead(before: &Aabb, bounds: &Aabb) -> Aabb {
     let moved = (bounds.min - before.min) * FRAMES_AHEAD;
     let largest = (bounds.max - bounds.min).max_element();
-    let way = moved.clamp(
-        glam::Vec3::splat(-largest),
-        glam::Vec3::splat(largest),
-    );
+    let way = moved.clamp(glam::Vec3::splat(-largest), glam::Vec3::splat(largest));
     let around = 0.25 * way.abs().max_element();
     let room = Aabb {
         min: bounds.min + way.min(glam::Vec3::ZERO) - around,
@@ -404,7 +405,11 @@ mod tests {
         let mut tree = BoundsTree::default();
         let mut boxes = vec![Aabb::EMPTY; 1500];
         for step in 0..40_000 {
-            let index = if step < 1500 { step } else { (random() * 1500.0) as usize };
+            let index = if step < 1500 {
+                step
+            } else {
+                (random() * 1500.0) as usize
+            };
             let place = if step < 1500 {
                 Vec3::new((step % 39) as f32, 0.0, (step / 39) as f32)
             } else {
@@ -432,12 +437,25 @@ mod tests {
             let volume = Aabb::new(place - 3.0 * random(), place + 3.0 * random());
             let overlap = |a: &Aabb| a.min.cmple(volume.max).all() && a.max.cmpge(volume.min).all();
             let mut met = Vec::new();
-            tree.walk(&mut met, |_, around| overlap(around), |met, index| met.push(index));
+            tree.walk(
+                &mut met,
+                |_, around| overlap(around),
+                |met, index| met.push(index),
+            );
             met.sort_unstable();
-            assert!(met.windows(2).all(|pair| pair[0] < pair[1]), "each is met once");
+            assert!(
+                met.windows(2).all(|pair| pair[0] < pair[1]),
+                "each is met once"
+            );
             met.retain(|index| overlap(&boxes[*index as usize]));
-            let wanted = (0u32..).zip(&boxes).filter(|(_, b)| !b.is_empty() && overlap(b));
-            assert_eq!(met, wanted.map(|(index, _)| index).collect::<Vec<_>>(), "step {step}");
+            let wanted = (0u32..)
+                .zip(&boxes)
+                .filter(|(_, b)| !b.is_empty() && overlap(b));
+            assert_eq!(
+                met,
+                wanted.map(|(index, _)| index).collect::<Vec<_>>(),
+                "step {step}"
+            );
         }
         let depth = |mut node: u32| {
             let mut depth = 0;

@@ -135,8 +135,14 @@ impl Cascade<'_> {
         };
         let shadows = self.shadow_box(required, window, spacing, gap_share)?;
         Some(LightBox {
-            min: shadows.min.clamp(window.min, window.max).with_z(shadows.min.z),
-            max: shadows.max.clamp(window.min, window.max).with_z(shadows.max.z),
+            min: shadows
+                .min
+                .clamp(window.min, window.max)
+                .with_z(shadows.min.z),
+            max: shadows
+                .max
+                .clamp(window.min, window.max)
+                .with_z(shadows.max.z),
         })
     }
 
@@ -250,7 +256,10 @@ impl Cascade<'_> {
             },
         );
         for part in self.parts.iter().filter(|part| reaches(&part.light)) {
-            include(&part.bounds, &space.bounds(self.casters.boxes.at(part.caster)));
+            include(
+                &part.bounds,
+                &space.bounds(self.casters.boxes.at(part.caster)),
+            );
         }
         nearest.get()
     }

@@ -203,8 +203,13 @@ impl PartScratch {
 /// Orders boxes by their coordinates.
 fn order_of_bounds(a: &Aabb, b: &Aabb) -> Ordering {
     let coordinates = |bounds: &Aabb| [bounds.min.to_array(), bounds.max.to_array()];
-    let pairs = coordinates(a).into_iter().flatten().zip(coordinates(b).into_iter().flatten());
-    pairs.fold(Ordering::Equal, |order, (a, b)| order.then_with(|| a.total_cmp(&b)))
+    let pairs = coordinates(a)
+        .into_iter()
+        .flatten()
+        .zip(coordinates(b).into_iter().flatten());
+    pairs.fold(Ordering::Equal, |order, (a, b)| {
+        order.then_with(|| a.total_cmp(&b))
+    })
 }
 
 /// Adds the parts of a caster behind which receivers of `seen` lie, one part per octave of height.
@@ -343,7 +348,9 @@ mod tests {
         });
         let listed: Vec<_> = listed.collect();
         let mut visible = LightBox::EMPTY;
-        listed.iter().for_each(|caster| visible.union(&caster.light));
+        listed
+            .iter()
+            .for_each(|caster| visible.union(&caster.light));
         let candidates = SunCasters {
             space: &space,
             boxes: Boxes { bounds, tree: None },

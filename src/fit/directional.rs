@@ -285,7 +285,12 @@ fn divide_casters(input: &FitInput<'_>, scratch: &mut FitScratch) {
         listed: &scratch.casters,
     };
     let parts = &mut scratch.parts;
-    parts.find(input.shapes, &candidates, &visible_box, &scratch.lists.parts);
+    parts.find(
+        input.shapes,
+        &candidates,
+        &visible_box,
+        &scratch.lists.parts,
+    );
 }
 
 impl FitScratch {

@@ -157,9 +157,10 @@ impl<'a> Prediction<'a> {
         for zone in 0..ZONES {
             let slice = camera_slice(input, &zone_limits, visible, held_depths, zone)?;
             between[zone] = slice.between;
-            required[zone] =
-                required_box(input, &zone_limits, Some(&slice), sampled.seen, zone);
-            required[zone].iter().for_each(|required| window.union(required));
+            required[zone] = required_box(input, &zone_limits, Some(&slice), sampled.seen, zone);
+            required[zone]
+                .iter()
+                .for_each(|required| window.union(required));
         }
         let zones: [Extent; ZONES] = std::array::from_fn(|zone| match &required[zone] {
             None => Extent::NOTHING,

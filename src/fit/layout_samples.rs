@@ -216,9 +216,8 @@ impl Sampled<'_> {
             let enter = low.min(high).max_element().max(0.0);
             low.max(high).min_element() > enter + least
         };
-        let outline = |light: &LightBox| {
-            2.0 * (light.max - light.min).truncate().recip().element_sum()
-        };
+        let outline =
+            |light: &LightBox| 2.0 * (light.max - light.min).truncate().recip().element_sum();
         let place = self.input.space.point(point);
         let place = LightBox {
             min: place,

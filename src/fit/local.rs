@@ -150,11 +150,7 @@ impl LocalFit {
     /// Returns the distance up to which the light matters: where the farthest receiver that is seen
     /// ends, and at most the light's range. It grows with what is seen at once, and shrinks late.
     /// The second value is what is held of it, and the third what was asked for.
-    fn reach(
-        &self,
-        input: &LocalInput<'_>,
-        light: DVec3,
-    ) -> (f64, Option<HeldSize>, Option<f64>) {
+    fn reach(&self, input: &LocalInput<'_>, light: DVec3) -> (f64, Option<HeldSize>, Option<f64>) {
         // The six faces of a cube cover all directions together. The one view of a cone does not.
         let cone = match input.views {
             [axes] => {
@@ -341,8 +337,14 @@ impl Extent {
         let (low_near, low_far) = at(span.min);
         let (high_near, high_far) = at(span.max);
         span.nearest > 0.0
-            && self.min.cmple(low_near.min(low_far) - span.rounding()).all()
-            && self.max.cmpge(high_near.max(high_far) + span.rounding()).all()
+            && self
+                .min
+                .cmple(low_near.min(low_far) - span.rounding())
+                .all()
+            && self
+                .max
+                .cmpge(high_near.max(high_far) + span.rounding())
+                .all()
     }
 }
 

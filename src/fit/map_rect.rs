@@ -193,8 +193,7 @@ impl HeldBounds {
     /// Returns what is held if the frame that asked for these bounds comes again. Returns `None`
     /// where the bounds themselves change, because they were larger than needed for long enough.
     pub fn again(&self, demand: &BoundsDemand) -> Option<Self> {
-        let depth =
-            |near| HeldDepth::fit(demand.far, near, demand.least_depth, Some(&self.depth));
+        let depth = |near| HeldDepth::fit(demand.far, near, demand.least_depth, Some(&self.depth));
         let next = Self {
             rect: HeldRect::fit(&demand.request, Some(&self.rect)),
             depth: depth(demand.nearest),

@@ -69,9 +69,9 @@ mod visible;
 
 pub use axes::LightAxes;
 pub(crate) use axes::{LightBox, LightSpace};
-pub(crate) use camera::CameraFrustum;
 pub(crate) use bounds_tree::BoundsTree;
 pub(crate) use boxes::Boxes;
+pub(crate) use camera::CameraFrustum;
 pub use camera::CameraView;
 pub use cascade_layout::CascadeLayout;
 pub use caster_shape::CasterShape;

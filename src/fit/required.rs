@@ -39,7 +39,11 @@ pub(crate) fn checked_spacing(
 /// Returns the wider side, seen from the light, of all casters and receivers of the frame together.
 fn widest_given(input: &FitInput<'_>) -> f64 {
     let receivers = input.receivers;
-    let lists = [input.casters.bounds, receivers.given, receivers.casters.bounds];
+    let lists = [
+        input.casters.bounds,
+        receivers.given,
+        receivers.casters.bounds,
+    ];
     let given = lists.into_iter().flatten();
     let given = given
         .filter(|bounds| !bounds.is_empty())

@@ -63,7 +63,12 @@ impl<'a> SunCasters<'a> {
         if self.boxes.tree.is_none() {
             for caster in self.listed {
                 if !self.is_divided(caster.index) {
-                    meet(state, caster.index, self.boxes.at(caster.index), &caster.light);
+                    meet(
+                        state,
+                        caster.index,
+                        self.boxes.at(caster.index),
+                        &caster.light,
+                    );
                 }
             }
             return;
@@ -78,11 +83,13 @@ impl<'a> SunCasters<'a> {
                 }
                 let light = self.space.bounds(around);
                 let reach = light.min.abs().max(light.max.abs()).element_sum();
-                enters(state, &light.grown(error + AROUND_STEPS * f64::EPSILON * reach))
+                enters(
+                    state,
+                    &light.grown(error + AROUND_STEPS * f64::EPSILON * reach),
+                )
             },
             |state, index, bounds| {
-                if self.visible.can_be_shadowed_by(bounds, toward_light)
-                    && !self.is_divided(index)
+                if self.visible.can_be_shadowed_by(bounds, toward_light) && !self.is_divided(index)
                 {
                     meet(state, index, bounds, &self.space.bounds(bounds));
                 }

@@ -128,7 +128,10 @@ impl<'a> World<'a> {
         for _ in 0..[0, 0, 1, 1, 3, 12][self.random.index(6)] {
             let id = self.any_id();
             let way = if self.random.unit() < 0.1 { 40.0 } else { 0.4 };
-            let shift = self.random.point(DVec3::splat(-way), DVec3::splat(way)).as_vec3();
+            let shift = self
+                .random
+                .point(DVec3::splat(-way), DVec3::splat(way))
+                .as_vec3();
             let changed = self.set.update(id, |thing| {
                 let moved = Mat4::from_translation(shift) * thing.mesh.render_from_model();
                 thing.mesh.set_transform(moved)
@@ -151,7 +154,9 @@ impl<'a> World<'a> {
             let changed = self.set.update(id, |thing| match flag {
                 0 => thing.is_broken = !thing.is_broken,
                 1 => thing.is_restless = !thing.is_restless,
-                _ => thing.mesh.set_roles(thing.mesh.receives(), thing.mesh.casts()),
+                _ => thing
+                    .mesh
+                    .set_roles(thing.mesh.receives(), thing.mesh.casts()),
             });
             changed.expect("a known caster");
         }
@@ -200,16 +205,15 @@ impl Light {
             ..Default::default()
         };
         let mut pool = OmniShadowPool::new(device, &pool).expect("a valid pool");
-        let lights = [DVec3::new(3.0, 2.0, 1.0), DVec3::new(-6.0, 3.0, -2.0)].map(|place| {
-            PoolLight {
+        let lights =
+            [DVec3::new(3.0, 2.0, 1.0), DVec3::new(-6.0, 3.0, -2.0)].map(|place| PoolLight {
                 slot: pool.insert().expect("a slot"),
                 light: OmniLight {
                     position_world: place,
                     range: 7.0,
                 },
                 importance: 1.0,
-            }
-        });
+            });
         vec![
             sun(CascadeLayout::Fixed, Stability::TightFit),
             sun(CascadeLayout::Fixed, Stability::BoundingSphere),
@@ -285,8 +289,7 @@ fn a_set_and_a_list_in_any_order_give_the_same_maps() {
         let bytes = |light: &Light| TextureBytes::new(gpu, light.maps().texture());
         lights.iter().map(bytes).collect()
     };
-    let [set_bytes, list_bytes, anew_bytes] =
-        [bytes(&of_set), bytes(&of_list), bytes(&anew)];
+    let [set_bytes, list_bytes, anew_bytes] = [bytes(&of_set), bytes(&of_list), bytes(&anew)];
     let (mut set_scene, mut list_scene) = (ShadowScene::new(), ShadowScene::new());
     let mut random = Random::new(4);
     let camera = |eye: DVec3| Camera::modern(eye, DVec3::ZERO, 1.0, 1.5).view();
@@ -328,7 +331,10 @@ fn a_set_and_a_list_in_any_order_give_the_same_maps() {
             2 => Coverage::Bounds(Aabb::new(Vec3::splat(-6.0), Vec3::splat(6.0))),
             _ => Coverage::Everything,
         };
-        let receivers = [Aabb::new(Vec3::new(-2.0, 4.0, -2.0), Vec3::new(2.0, 4.0, 2.0))];
+        let receivers = [Aabb::new(
+            Vec3::new(-2.0, 4.0, -2.0),
+            Vec3::new(2.0, 4.0, 2.0),
+        )];
         let descriptor = |casters| ShadowFrameDescriptor {
             origin: DVec3::ZERO,
             coverage,
@@ -340,8 +346,10 @@ fn a_set_and_a_list_in_any_order_give_the_same_maps() {
         for last in (1..members.len()).rev() {
             members.swap(last, random.index(last + 1));
         }
-        let list: Vec<&dyn ShadowCaster> =
-            members.iter().map(|(_, thing)| *thing as &dyn ShadowCaster).collect();
+        let list: Vec<&dyn ShadowCaster> = members
+            .iter()
+            .map(|(_, thing)| *thing as &dyn ShadowCaster)
+            .collect();
         let set_frame = set_scene.frame(&descriptor(Casters::Set(&world.set)));
         let set_frame = set_frame.expect("a valid frame");
         let list_frame = list_scene.frame(&descriptor(Casters::List(&list)));
@@ -366,14 +374,22 @@ fn a_set_and_a_list_in_any_order_give_the_same_maps() {
             list_report.broken_bounds.clear();
             assert_eq!(report, list_report, "{what}");
             let (views, list_views) = (light.maps().views(), other.maps().views());
-            assert_eq!(views.collect::<Vec<_>>(), list_views.collect::<Vec<_>>(), "{what}");
+            assert_eq!(
+                views.collect::<Vec<_>>(),
+                list_views.collect::<Vec<_>>(),
+                "{what}"
+            );
             let uniforms = bytemuck::cast_slice::<_, u8>(light.maps().view_uniforms());
             let list_uniforms = bytemuck::cast_slice::<_, u8>(other.maps().view_uniforms());
             assert!(uniforms == list_uniforms, "{what}");
             anew[index].invalidate();
             anew[index].record(&mut encoder, &list_frame, place, direction);
             drawn += report.passes;
-            kept += report.views.iter().filter(|v| v.status == ViewStatus::Kept).count();
+            kept += report
+                .views
+                .iter()
+                .filter(|v| v.status == ViewStatus::Kept)
+                .count();
         }
         let reads = !is_still || frame % 40 == 0;
         if reads {
@@ -397,12 +413,21 @@ fn a_set_and_a_list_in_any_order_give_the_same_maps() {
                 }
                 let layer = view.layer as usize;
                 let what = format!("frame {frame}, light {index}, layer {layer}");
-                assert!(now[layer] == listed[layer], "{what}: another map than of a list");
-                assert!(shares_layer || now[layer] == fresh[layer], "{what}: not as drawn anew");
+                assert!(
+                    now[layer] == listed[layer],
+                    "{what}: another map than of a list"
+                );
+                assert!(
+                    shares_layer || now[layer] == fresh[layer],
+                    "{what}: not as drawn anew"
+                );
             }
         }
     }
     let indices: HashSet<u32> = seen_indices.iter().map(|(index, _)| *index).collect();
-    assert!(indices.len() < seen_indices.len(), "some places are used again");
+    assert!(
+        indices.len() < seen_indices.len(),
+        "some places are used again"
+    );
     assert!(kept > 1000 && drawn > 1000, "{kept} {drawn}");
 }

@@ -4,8 +4,8 @@ use glam::{DVec3, Mat4, Vec3};
 use shadow_support::camera::Camera;
 use shadow_support::mesh::Mesh;
 use wgpu_shadows::{
-    Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, ShadowCaster,
-    Casters, ShadowFrameDescriptor, ShadowScene, report::ViewStatus,
+    Casters, Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    ShadowCaster, ShadowFrameDescriptor, ShadowScene, report::ViewStatus,
 };
 
 use crate::fixtures::gpu::gpu;

@@ -6,8 +6,9 @@ use shadow_support::camera::Camera;
 use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use wgpu_shadows::{
-    Aabb, CameraView, Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    OmniLight, OmniShadow, OmniShadowDescriptor, Casters, ShadowFrameDescriptor, ShadowScene, Stability,
+    Aabb, CameraView, Casters, Coverage, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, OmniLight, OmniShadow, OmniShadowDescriptor,
+    ShadowFrameDescriptor, ShadowScene, Stability,
 };
 
 use crate::fixtures::ask::Ask;

@@ -6,8 +6,8 @@ use shadow_support::camera::Camera;
 use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use wgpu_shadows::{
-    Aabb, CameraView, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    ShadowCaster, ShadowError, Casters, ShadowFrameDescriptor, ShadowScene,
+    Aabb, CameraView, Casters, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    ShadowCaster, ShadowError, ShadowFrameDescriptor, ShadowScene,
 };
 
 use crate::fixtures::frames::{Coverage, DirectionalFrame, RecordFrame};

@@ -8,10 +8,10 @@ use shadow_support::probe::Point;
 use shadow_support::random::Random;
 use shadow_support::triangle::{Triangle, occluded};
 use wgpu_shadows::{
-    Aabb, CameraView, Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowCaster, Casters, ShadowFrameDescriptor,
-    ShadowScene, ShadowView, SpotLight, SpotShadow, SpotShadowDescriptor, Stability,
-    report::ShadowReport, report::ViewStatus,
+    Aabb, CameraView, Casters, Coverage, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor,
+    ShadowCaster, ShadowFrameDescriptor, ShadowScene, ShadowView, SpotLight, SpotShadow,
+    SpotShadowDescriptor, Stability, report::ShadowReport, report::ViewStatus,
 };
 
 use crate::fixtures::ask::Ask;

@@ -3,9 +3,9 @@
 use std::error::Error;
 
 use wgpu_shadows::{
-    Bias, Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter,
-    MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowBindings,
-    ShadowBindingsDescriptor, ShadowCaster, ShadowError, Casters, ShadowFrameDescriptor, ShadowScene,
+    Bias, Casters, Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    Filter, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowBindings,
+    ShadowBindingsDescriptor, ShadowCaster, ShadowError, ShadowFrameDescriptor, ShadowScene,
     SpotLight, SpotShadow, SpotShadowDescriptor, report::ShadowReport, report::ViewStatus,
 };
 
