@@ -114,10 +114,8 @@ fn batch_hash(geometry: &MeshGeometry, mirrors: bool) -> NonZeroU32 {
 pub(crate) struct Content {
     /// Identifies the answers in the process.
     source: u64,
-    /// Counts the changes of what the fit uses.
-    fit: u64,
-    /// Counts all changes.
-    all: u64,
+    /// Counts the changes.
+    changes: u64,
     /// Counts the frames in which a caster may always look different; 0 where there is none.
     frame: u64,
 }
@@ -172,8 +170,7 @@ impl CasterAnswers {
             always_changing: 0,
             content: Content {
                 source: NEXT_SOURCE.fetch_add(1, Ordering::Relaxed),
-                fit: 0,
-                all: 0,
+                changes: 0,
                 frame: 0,
             },
         }
@@ -235,8 +232,7 @@ impl CasterAnswers {
             let gone = self.facts.drain(count..);
             self.always_changing -= gone.filter(|facts| facts.revision.is_none()).count();
             self.broken.split_off(&(count as u32));
-            self.content.fit += 1;
-            self.content.all += 1;
+            self.content.changes += 1;
         }
     }
 
@@ -265,8 +261,7 @@ impl CasterAnswers {
             self.receives.push(receives);
             self.shapes.push(shape);
             self.facts.push(facts);
-            self.content.fit += 1;
-            self.content.all += 1;
+            self.content.changes += 1;
             self.follow(index, &Aabb::EMPTY, &either(&casts, &receives));
             return;
         }
@@ -277,14 +272,13 @@ impl CasterAnswers {
             self.casts[at] = casts;
             self.receives[at] = receives;
             self.shapes[at] = shape;
-            self.content.fit += 1;
-            self.content.all += 1;
+            self.content.changes += 1;
             self.follow(index, &before, &either(&casts, &receives));
         }
         self.always_changing -= usize::from(self.facts[at].revision.is_none());
         if self.facts[at] != facts {
             self.facts[at] = facts;
-            self.content.all += 1;
+            self.content.changes += 1;
         }
     }
 

@@ -106,7 +106,7 @@ pub enum ShadowError {
     CasterFormat {
         /// Is the path of the list.
         field: &'static str,
-        /// Is the index in the list.
+        /// Is the index in the list, or that of the [`CasterId`](crate::CasterId) in a set.
         index: usize,
         /// Is the format of the map.
         format: DepthFormat,
@@ -116,7 +116,7 @@ pub enum ShadowError {
     CasterDevice {
         /// Is the path of the list.
         field: &'static str,
-        /// Is the index in the list.
+        /// Is the index in the list, or that of the [`CasterId`](crate::CasterId) in a set.
         index: usize,
     },
     /// A caster was removed from the set, or belongs to another set.
