@@ -381,7 +381,7 @@ fn copies_in_a_set_are_those_in_a_list() {
         let report = of_list.record(&mut encoder, &frame_of_list.expect("a valid frame"), &light);
         let list_report = report.expect("a valid light").clone();
         assert_eq!(set_report, list_report, "frame {frame}");
-        bytes.each_ref().map(|bytes| bytes.copy(&mut encoder));
+        bytes.iter().for_each(|bytes| bytes.copy(&mut encoder));
         gpu.submit(encoder);
         let [now, wanted] = bytes.each_ref().map(|bytes| bytes.read(gpu));
         assert!(now == wanted, "frame {frame}");
