@@ -1,29 +1,17 @@
-//! Generates streets in a grid, blocks between them, and everything on them in one instance buffer.
+//! Holds the town on the device: everything in one instance buffer.
 
-use example_support::mesh::{Instance, Mesh, Vertex, cube, sphere, vertex_buffer};
+use example_support::instance_caster::{self, InstanceCaster};
+use example_support::mesh::{Instance, Mesh, cube, sphere, vertex_buffer};
 use example_support::phong::Batch;
-use glam::{Vec2, Vec3};
-use shadow_support::random::Random;
-use wgpu_shadows::{
-    Aabb, CasterPipeline, caster::CasterPipelineDescriptor, caster::CasterVertex,
-    caster::ModelTransform, caster::PositionAttribute, error::CasterError,
-};
-
-use crate::building::Building;
-use crate::plot::{self, BLOCK_SIDE, Part, Shape};
-
-/// Is the distance from the middle of one street to the middle of the next.
-pub const STREET_SPACING: f32 = BLOCK_SIDE + 14.0;
+use example_support::town::Plan;
+use wgpu_shadows::{Aabb, DepthFormat, error::CasterError};
 
 /// Is the number of blocks along each side of the town.
 const BLOCKS: i32 = 18;
 
-/// Is the height of the kerbs.
-const KERB: f32 = 0.15;
-
-/// Holds the town. Streets run along x and z; one of each passes through the middle.
+/// Holds the town.
 pub struct Town {
-    pub buildings: Vec<Building>,
+    pub buildings: Vec<InstanceCaster>,
     /// Bounds what only receives: streets and pavements.
     pub ground: Aabb,
     box_mesh: Mesh,
@@ -37,51 +25,39 @@ pub struct Town {
 
 impl Town {
     pub fn new(device: &wgpu::Device) -> Result<Self, CasterError> {
-        let mut random = Random::new(5);
-        let mut pavements = vec![street()];
-        let (mut boxes, mut domes) = (Vec::new(), Vec::new());
-        for (column, row) in (0..BLOCKS).flat_map(|x| (0..BLOCKS).map(move |z| (x, z))) {
-            let cell = Vec2::new(column as f32, row as f32) + 0.5 - BLOCKS as f32 * 0.5;
-            let center = cell * STREET_SPACING;
-            let half = Vec2::splat(BLOCK_SIDE * 0.5);
-            let slab = Vec3::new(0.46, 0.45, 0.43);
-            pavements.push(plot::upright(center, half, 0.0, KERB, slab));
-            // Buildings are higher toward the middle.
-            let eaves = 9.0 + 16.0 * (-cell.length_squared() / 30.0).exp();
-            for part in plot::block(&mut random, center, eaves) {
-                match part.shape {
-                    Shape::Box => boxes.push(part),
-                    Shape::Dome => domes.push(part),
-                }
-            }
-        }
-        let first_building = pavements.len() as u32;
-        let first_dome = first_building + boxes.len() as u32;
-        let parts: Vec<Part> = pavements.into_iter().chain(boxes).chain(domes).collect();
-        let instances: Vec<Instance> = parts.iter().map(|part| part.instance).collect();
-        let instances = vertex_buffer(device, &instances);
+        let Plan {
+            ground,
+            houses,
+            domes,
+            ground_bounds,
+        } = Plan::new(BLOCKS);
+        let first_building = ground.len();
+        let first_dome = first_building + houses.len();
+        let list: Vec<Instance> = ground.into_iter().chain(houses).chain(domes).collect();
+        let instances = vertex_buffer(device, &list);
         let box_mesh = Mesh::new(device, &cube());
         let dome_mesh = Mesh::new(device, &sphere(24));
-        let pipeline = caster_pipeline(device)?;
+        let pipeline = instance_caster::pipeline(device, "building", &[DepthFormat::Float32])?;
         let buildings = (0..)
-            .zip(&parts)
-            .skip(first_building as usize)
-            .map(|(index, part)| {
-                let mesh = match part.shape {
-                    Shape::Box => &box_mesh,
-                    Shape::Dome => &dome_mesh,
+            .zip(&list)
+            .skip(first_building)
+            .map(|(index, instance)| {
+                let mesh = if (index as usize) < first_dome {
+                    &box_mesh
+                } else {
+                    &dome_mesh
                 };
-                Building::new(mesh, &instances, index, &part.instance, &pipeline)
+                InstanceCaster::new(mesh, &instances, index, instance, &pipeline)
             })
             .collect();
         Ok(Self {
             buildings,
-            ground: ground(),
+            ground: ground_bounds,
             box_mesh,
             dome_mesh,
             instances,
-            first_dome,
-            instance_count: parts.len() as u32,
+            first_dome: first_dome as u32,
+            instance_count: list.len() as u32,
         })
     }
 
@@ -97,39 +73,4 @@ impl Town {
             batch(&self.dome_mesh, self.first_dome..self.instance_count),
         ]
     }
-}
-
-/// Returns the bounds of streets and pavements.
-fn ground() -> Aabb {
-    let reach = BLOCKS as f32 * 0.5 * STREET_SPACING;
-    Aabb::new(
-        Vec3::new(-reach, 0.0, -reach),
-        Vec3::new(reach, KERB, reach),
-    )
-}
-
-/// Returns one slab of asphalt under everything.
-fn street() -> Part {
-    let half = ground().max.x;
-    let asphalt = Vec3::new(0.20, 0.20, 0.21);
-    plot::upright(Vec2::ZERO, Vec2::splat(half), -1.0, 0.0, asphalt)
-}
-
-/// Creates a pipeline that reads the matrices where the scene's pass reads them: in the instance
-/// buffer.
-fn caster_pipeline(device: &wgpu::Device) -> Result<CasterPipeline, CasterError> {
-    CasterPipeline::new(
-        device,
-        &CasterPipelineDescriptor {
-            label: Some("building"),
-            vertex: CasterVertex::BuiltIn {
-                position: PositionAttribute::float32x3(size_of::<Vertex>() as u64),
-                model: ModelTransform::InstanceMatrix {
-                    array_stride: size_of::<Instance>() as u64,
-                    offset: 0,
-                },
-            },
-            ..Default::default()
-        },
-    )
 }
