@@ -95,7 +95,7 @@ impl Viewer {
         };
         let FullOutput {
             platform_output,
-            textures_delta,
+            mut textures_delta,
             shapes,
             pixels_per_point,
             ..
@@ -106,8 +106,10 @@ impl Viewer {
             pixels_per_point,
         };
         let (gpu, renderer) = self.engine.renderer();
-        for (id, delta) in &textures_delta.set {
-            renderer.update_texture(&gpu.device, &gpu.queue, *id, delta);
+        for (id, deltas) in &textures_delta.set {
+            for delta in deltas {
+                renderer.update_texture(&gpu.device, &gpu.queue, *id, delta);
+            }
         }
         paint(gpu, renderer, &jobs, &screen, target);
         #[cfg(not(target_arch = "wasm32"))]
@@ -122,6 +124,7 @@ impl Viewer {
         for id in &textures_delta.free {
             renderer.free_texture(id);
         }
+        textures_delta.clear();
         FrameResult {
             output: platform_output,
             repaint_after,

@@ -89,7 +89,7 @@ fn move_divider(ui: &Ui, rect: Rect, state: &mut State) -> bool {
         pos2(x - GRIP, rect.top()),
         pos2(x + GRIP, rect.bottom()),
     );
-    let id = ui.id().with("divider");
+    let id = ui.scope_id().with("divider");
     let response = ui
         .interact(grip, id, Sense::drag())
         .on_hover_and_drag_cursor(egui::CursorIcon::ResizeHorizontal);
