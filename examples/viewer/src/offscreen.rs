@@ -45,7 +45,8 @@ pub fn save(shot: &Shot<'_>) -> Result<(), String> {
     viewer.state.is_moving = shot.is_moving;
     let [width, height] = shot.size.map(|side| side as f32);
     let mut frames = 0;
-    loop {
+    let mut still_frames = 0;
+    while still_frames < SETTLED {
         let input = RawInput {
             screen_rect: Some(Rect::from_min_size(Pos2::ZERO, vec2(width, height))),
             time: Some(f64::from(frames) * 0.1),
@@ -61,9 +62,12 @@ pub fn save(shot: &Shot<'_>) -> Result<(), String> {
                 viewer.state.settings.show = Show::Difference;
             }
         }
-        if frames > 2 * SETTLED && !viewer.is_casting() {
-            break;
-        }
+        let has_begun = frames > SETTLED + 1;
+        still_frames = if has_begun && !viewer.is_casting() {
+            still_frames + 1
+        } else {
+            0
+        };
     }
     for message in &viewer.state.messages {
         eprintln!("viewer: {message}");

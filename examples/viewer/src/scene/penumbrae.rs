@@ -50,7 +50,7 @@ pub fn scene() -> Scene {
         ball(-0.6, 0.7, -2.4, 0.7, [0.66, 0.60, 0.30]),
     ];
     let models = vec![Model::solid(cube(), boxes), Model::solid(sphere(24), balls)];
-    let viewpoint = Viewpoint::new(Vec3::new(0.4, 4.6, 10.5), Vec3::new(0.2, 0.5, -0.2), 0.72);
+    let viewpoint = Viewpoint::new(Vec3::new(0.4, 7.2, 15.0), Vec3::new(0.2, 0.6, -0.4), 0.72);
     let soft = SideSettings {
         filter: Filter::Pcss { light_size: 0.0 },
         ..SideSettings::library(1)

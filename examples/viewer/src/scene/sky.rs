@@ -29,7 +29,7 @@ pub fn scene() -> Scene {
         cuboid(Vec3::new(x, half.y, z), half, Vec3::new(0.55, 0.55, 0.57))
     };
     let mut boxes = trunks;
-    boxes.extend((0..12).map(|index| mast(30.0, -40.0 - 160.0 * index as f32, 28.0)));
+    boxes.extend((0..12).map(|index| mast(9.0, -20.0 - 130.0 * index as f32, 28.0)));
     boxes.push(cuboid(
         Vec3::new(-6.0, 1.6, -4.0),
         Vec3::new(2.6, 1.6, 2.0),
@@ -40,9 +40,9 @@ pub fn scene() -> Scene {
         Model::of(Role::Ground, square(Vec3::Y, 0.0).to_vec(), vec![ground]),
         Model::of(Role::Glow, inside, vec![dome]),
         Model::solid(cube(), boxes),
-        Model::solid(sphere(8), crowns),
+        Model::solid(sphere(12), crowns),
     ];
-    let viewpoint = Viewpoint::new(Vec3::new(4.0, 3.2, 22.0), Vec3::new(1.0, 2.0, 0.0), 0.9);
+    let viewpoint = Viewpoint::new(Vec3::new(4.0, 4.2, 16.0), Vec3::new(1.5, 4.4, 0.0), 0.9);
     Scene {
         light: Light {
             haze: 3500.0,

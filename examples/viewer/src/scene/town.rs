@@ -28,8 +28,8 @@ pub fn scene() -> Scene {
         walker(limbs, cube()),
         walker(head, sphere(8)),
     ];
-    let eye = Vec3::new(2.2, 1.9, 46.0);
-    let viewpoint = Viewpoint::new(eye, eye + Vec3::new(-1.2, -0.4, -10.0), 0.9);
+    let eye = Vec3::new(2.6, 2.2, 47.0);
+    let viewpoint = Viewpoint::new(eye, eye + Vec3::new(-1.1, 0.3, -10.0), 0.9);
     Scene {
         light: Light {
             haze: 2500.0,
@@ -37,7 +37,7 @@ pub fn scene() -> Scene {
         },
         extent: 300.0,
         sides: [SideSettings::textbook(140.0), SideSettings::library(4)],
-        ..day("town", models, viewpoint, Vec3::new(0.30, 0.62, 0.70))
+        ..day("town", models, viewpoint, Vec3::new(0.10, 0.62, 0.80))
     }
 }
 
