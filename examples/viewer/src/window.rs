@@ -33,7 +33,8 @@ pub struct Shown {
     viewer: Viewer,
 }
 
-struct App {
+/// Answers the events of the window.
+pub struct App {
     proxy: EventLoopProxy<Arrival>,
     /// Holds the settings that the window begins with.
     address: String,
@@ -42,7 +43,8 @@ struct App {
     shown: Option<Shown>,
     /// Is when the next frame is wanted, if not at once.
     next_frame: Option<Instant>,
-    failure: Option<String>,
+    /// Is why the window was closed before it showed anything.
+    pub failure: Option<String>,
 }
 
 /// Shows the window until it is closed. `address` holds settings as the page does.
@@ -53,7 +55,7 @@ pub fn run(
 ) -> Result<(), String> {
     let event_loop = EventLoop::with_user_event().build();
     let event_loop = event_loop.map_err(|error| format!("no window: {error}"))?;
-    let mut app = App {
+    let app = App {
         proxy: event_loop.create_proxy(),
         address,
         first_request,
@@ -63,10 +65,7 @@ pub fn run(
         failure: None,
     };
     host::before_run(&app.proxy);
-    event_loop
-        .run_app(&mut app)
-        .map_err(|error| format!("the window failed: {error}"))?;
-    app.failure.map_or(Ok(()), Err)
+    host::run_app(event_loop, app)
 }
 
 impl ApplicationHandler<Arrival> for App {

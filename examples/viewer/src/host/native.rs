@@ -7,13 +7,13 @@ use std::process::ExitCode;
 use clap::Parser;
 use example_support::arguments;
 use winit::dpi::LogicalSize;
-use winit::event_loop::EventLoopProxy;
+use winit::event_loop::{EventLoop, EventLoopProxy};
 use winit::window::Window;
 
 use crate::offscreen::{self, Shot};
 use crate::settings::Settings;
 use crate::state::Request;
-use crate::window::{self, Arrival};
+use crate::window::{self, App, Arrival};
 
 /// Shows shadows in a window, with every setting beside them.
 #[derive(Parser)]
@@ -67,6 +67,14 @@ fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
         .with_title("wgpu-shadows")
         .with_inner_size(LogicalSize::new(size[0], size[1]));
     Ok(window::run(address, arguments.file.map(Request::Path), attributes)?)
+}
+
+/// Runs the loop until the window is closed.
+pub fn run_app(event_loop: EventLoop<Arrival>, mut app: App) -> Result<(), String> {
+    event_loop
+        .run_app(&mut app)
+        .map_err(|error| format!("the window failed: {error}"))?;
+    app.failure.map_or(Ok(()), Err)
 }
 
 /// Runs what makes the device to its end.

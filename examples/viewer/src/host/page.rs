@@ -5,14 +5,14 @@ use std::process::ExitCode;
 use wasm_bindgen::prelude::*;
 use wasm_bindgen_futures::{JsFuture, spawn_local};
 use web_sys::{DragEvent, HtmlCanvasElement};
-use winit::event_loop::EventLoopProxy;
-use winit::platform::web::WindowAttributesExtWebSys;
+use winit::event_loop::{EventLoop, EventLoopProxy};
+use winit::platform::web::{EventLoopExtWebSys, WindowAttributesExtWebSys};
 use winit::window::Window;
 
 use crate::address;
 use crate::settings::Settings;
 use crate::state::Request;
-use crate::window::{self as viewer_window, Arrival};
+use crate::window::{self as viewer_window, App, Arrival};
 
 /// Runs the page.
 pub fn main() -> ExitCode {
@@ -30,6 +30,12 @@ pub fn main() -> ExitCode {
         tell_failure(&error);
     }
     ExitCode::SUCCESS
+}
+
+/// Starts the loop, which goes on for as long as the page is there.
+pub fn run_app(event_loop: EventLoop<Arrival>, app: App) -> Result<(), String> {
+    event_loop.spawn_app(app);
+    Ok(())
 }
 
 /// Runs what makes the device beside the page.

@@ -49,7 +49,7 @@ fn place(time: f32) -> (Mat4, f32) {
     } else {
         (2.0 * WAY - walked, std::f32::consts::PI)
     };
-    let place = Vec3::new(0.4, 0.0, 41.0 - along);
+    let place = Vec3::new(1.7, 0.0, 41.0 - along);
     (
         Mat4::from_rotation_translation(Quat::from_rotation_y(turn), place),
         time * SPEED * 4.0,
