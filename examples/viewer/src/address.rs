@@ -28,7 +28,10 @@ pub fn write(settings: &Settings) -> String {
     let [x, y, z] = viewpoint.eye.to_array();
     // The scene of a file cannot be opened again by its name.
     let scene = scene::NAMES.iter().find(|name| *name == scene);
-    let mut pairs: Vec<String> = scene.map(|name| format!("scene={name}")).into_iter().collect();
+    let mut pairs: Vec<String> = scene
+        .map(|name| format!("scene={name}"))
+        .into_iter()
+        .collect();
     pairs.extend([
         format!("eye={x},{y},{z}"),
         format!("look={},{}", viewpoint.yaw, viewpoint.pitch),
@@ -48,7 +51,9 @@ pub fn write(settings: &Settings) -> String {
 
 /// Returns the name of the scene in a text.
 pub fn scene_name(text: &str) -> Option<&str> {
-    pairs(text).find(|(key, _)| *key == "scene").map(|(_, name)| name)
+    pairs(text)
+        .find(|(key, _)| *key == "scene")
+        .map(|(_, name)| name)
 }
 
 /// Reads a text over `settings`, but for the scene. Returns what it does not understand.
@@ -119,8 +124,14 @@ fn side_pairs(side: &SideSettings) -> impl Iterator<Item = (&'static str, String
         ("bias", bias_name(bias)),
         ("blend", blend.to_string()),
         ("fade", fade.to_string()),
-        ("still", u8::from(stability == Stability::BoundingSphere).to_string()),
-        ("half", u8::from(depth_format == DepthFormat::Unorm16).to_string()),
+        (
+            "still",
+            u8::from(stability == Stability::BoundingSphere).to_string(),
+        ),
+        (
+            "half",
+            u8::from(depth_format == DepthFormat::Unorm16).to_string(),
+        ),
         ("lamp_map", lamp_map_size.to_string()),
         ("lamp_filter", filter_name(lamp_filter)),
     ]
@@ -129,7 +140,13 @@ fn side_pairs(side: &SideSettings) -> impl Iterator<Item = (&'static str, String
 
 fn set_side(side: &mut SideSettings, key: &str, value: &str) -> Option<()> {
     match key {
-        "scene" => side.covers = if value == "1" { Covers::Scene } else { Covers::Camera },
+        "scene" => {
+            side.covers = if value == "1" {
+                Covers::Scene
+            } else {
+                Covers::Camera
+            }
+        }
         "end" => side.max_distance = number(value, 0.0, 1e9)?,
         "map" => side.map_size = value.parse().ok().filter(|n| (1..=16384).contains(n))?,
         "cascades" => side.cascades = value.parse().ok().filter(|n| (1..=8).contains(n))?,
@@ -261,7 +278,10 @@ fn number(text: &str, least: f32, most: f32) -> Option<f32> {
 }
 
 fn numbers<const N: usize>(text: &str) -> Option<[f32; N]> {
-    let numbers: Option<Vec<f32>> = text.split(',').map(|text| number(text, -1e9, 1e9)).collect();
+    let numbers: Option<Vec<f32>> = text
+        .split(',')
+        .map(|text| number(text, -1e9, 1e9))
+        .collect();
     numbers?.try_into().ok()
 }
 

@@ -87,7 +87,8 @@ impl SideSettings {
     pub fn frame_comments(&self) -> String {
         let mut text = String::new();
         if self.covers == Covers::Scene {
-            text += "// In ShadowFrameDescriptor: coverage: Coverage::Bounds(bounds_of_the_scene)\n";
+            text +=
+                "// In ShadowFrameDescriptor: coverage: Coverage::Bounds(bounds_of_the_scene)\n";
         }
         if self.max_distance > 0.0 {
             text += &format!("// In CameraView: max_distance: {:?}\n", self.max_distance);
@@ -143,7 +144,9 @@ mod tests {
 
     fn without_spaces(text: &str) -> String {
         // rustfmt ends a list with a comma, where `stringify` sees it.
-        text.split_whitespace().collect::<String>().replace(",}", "}")
+        text.split_whitespace()
+            .collect::<String>()
+            .replace(",}", "}")
     }
 
     /// Compiles the Rust, and compares its text and its value.

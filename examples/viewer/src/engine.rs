@@ -128,7 +128,9 @@ impl Engine {
 
     /// Returns the size of the picture in pixels.
     pub fn picture_size(&self) -> [u32; 2] {
-        self.picture.as_ref().map_or([1, 1], |(picture, _)| picture.size)
+        self.picture
+            .as_ref()
+            .map_or([1, 1], |(picture, _)| picture.size)
     }
 
     /// Records the shadows and draws the picture, if anything differs from what it shows.
@@ -203,8 +205,15 @@ impl Engine {
         let mut encoder = gpu.encoder();
         for (index, side) in [&mut *left, &mut *right].into_iter().enumerate() {
             clock.begin(&mut encoder, index);
-            side.record(gpu, &mut encoder, stage, &cameras[index], &light, state.time)
-                .map_err(|error| format!("The shadows cannot be drawn: {error}."))?;
+            side.record(
+                gpu,
+                &mut encoder,
+                stage,
+                &cameras[index],
+                &light,
+                state.time,
+            )
+            .map_err(|error| format!("The shadows cannot be drawn: {error}."))?;
             clock.end(&mut encoder, index);
         }
         let copied = clock.resolve(gpu, &mut encoder);
@@ -237,7 +246,12 @@ impl Engine {
         let sides = [0, 1].map(|index| self.sides[index].as_ref().zip(Some(&cameras[index])));
         let lighting = lighting(&self.scene, settings);
         let result = self.trial.work(
-            &self.gpu, settings, drawn.time, sides, &self.stage, &lighting,
+            &self.gpu,
+            settings,
+            drawn.time,
+            sides,
+            &self.stage,
+            &lighting,
         );
         match result {
             Ok(wants_more) => wants_more || self.clock.is_waiting(),
@@ -252,7 +266,9 @@ impl Engine {
     /// Begins to cast rays.
     pub fn begin_truth(&mut self, state: &mut State) {
         let size = self.picture_size();
-        let begun = self.trial.begin(&self.scene, &state.settings, state.time, size);
+        let begun = self
+            .trial
+            .begin(&self.scene, &state.settings, state.time, size);
         if let Err(error) = begun {
             state.tell(error);
         }
@@ -315,7 +331,8 @@ impl Engine {
     pub fn layers(&self, light: usize) -> u32 {
         let layers = self.sides.iter().flatten().filter_map(|side| {
             let maps = side.maps();
-            maps.get(light).map(|(_, maps)| maps.view_uniforms().len() as u32)
+            maps.get(light)
+                .map(|(_, maps)| maps.view_uniforms().len() as u32)
         });
         layers.max().unwrap_or(0)
     }
@@ -340,7 +357,11 @@ impl Engine {
             1 => format!("{}²", own.map_size),
             count => format!("{count} × {}²", own.map_size),
         };
-        let covers = if own.covers == Covers::Scene { ", whole scene" } else { "" };
+        let covers = if own.covers == Covers::Scene {
+            ", whole scene"
+        } else {
+            ""
+        };
         let name = if is_textbook { "Textbook: " } else { "" };
         format!("{name}{filter}, {maps}{covers}")
     }

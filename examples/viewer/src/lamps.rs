@@ -27,8 +27,12 @@ impl Lamps {
         let device = &gpu.device;
         let mut spots = SpotShadowPool::new(device, &settings.spots(SPOTS as u32))?;
         let mut lamps = OmniShadowPool::new(device, &settings.lamps(LAMPS as u32))?;
-        let spot_slots = (0..SPOTS).map(|_| spots.insert()).collect::<Result<_, _>>()?;
-        let lamp_slots = (0..LAMPS).map(|_| lamps.insert()).collect::<Result<_, _>>()?;
+        let spot_slots = (0..SPOTS)
+            .map(|_| spots.insert())
+            .collect::<Result<_, _>>()?;
+        let lamp_slots = (0..LAMPS)
+            .map(|_| lamps.insert())
+            .collect::<Result<_, _>>()?;
         let uniforms = gpu.empty_buffer(
             ((SPOTS + LAMPS) * size_of::<LightUniform>()) as u64,
             wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,

@@ -75,12 +75,26 @@ impl Picture {
         if let Some((light, image)) = map {
             return self.draw_maps(encoder, &target, contents, light, image);
         }
-        let is_grey = matches!(contents.show, Show::Visibility | Show::Truth | Show::Difference);
-        let stroke = if is_grey { Stroke::Grey } else { Stroke::Picture };
+        let is_grey = matches!(
+            contents.show,
+            Show::Visibility | Show::Truth | Show::Difference
+        );
+        let stroke = if is_grey {
+            Stroke::Grey
+        } else {
+            Stroke::Picture
+        };
         let mut pass = scene_pass(encoder, &target, &self.depth, sky(contents));
         for (columns, (side, camera)) in self.columns(contents) {
             pass.set_scissor_rect(columns[0], 0, columns[1], self.size[1]);
-            side.draw(gpu, &mut pass, contents.stage, camera, contents.lighting, stroke);
+            side.draw(
+                gpu,
+                &mut pass,
+                contents.stage,
+                camera,
+                contents.lighting,
+                stroke,
+            );
         }
         drop(pass);
         if contents.show == Show::Cascades {

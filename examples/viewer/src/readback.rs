@@ -44,11 +44,7 @@ pub fn copy_texture(
 }
 
 /// Records the copy of a buffer.
-pub fn copy_buffer(
-    gpu: &Gpu,
-    encoder: &mut wgpu::CommandEncoder,
-    buffer: &wgpu::Buffer,
-) -> Copied {
+pub fn copy_buffer(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, buffer: &wgpu::Buffer) -> Copied {
     let copied = copy_target(gpu, buffer.size());
     encoder.copy_buffer_to_buffer(buffer, 0, &copied.buffer, 0, buffer.size());
     copied

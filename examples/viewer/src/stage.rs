@@ -116,7 +116,11 @@ impl DrawnModel {
 
 /// Returns the shape of a mesh that has no indices.
 fn shape(model: &Model) -> CasterShape {
-    let positions: Vec<Vec3> = model.vertices.iter().map(|vertex| vertex.position).collect();
+    let positions: Vec<Vec3> = model
+        .vertices
+        .iter()
+        .map(|vertex| vertex.position)
+        .collect();
     // Corners at one place count as one, as in a mesh with indices.
     let mut places: Vec<Vec3> = Vec::new();
     let mut known = std::collections::HashMap::new();

@@ -37,6 +37,7 @@ pub enum Request {
     /// Saves a picture of the window.
     Screenshot,
     /// Opens the file with these bytes.
+    #[cfg(target_arch = "wasm32")]
     File { name: String, bytes: Vec<u8> },
     /// Opens the file at a path, with what lies beside it.
     #[cfg(not(target_arch = "wasm32"))]

@@ -65,7 +65,10 @@ impl Trial {
     }
 
     pub fn errors(&self, side: usize) -> Option<&Errors> {
-        self.sides[side].verdict.as_ref().map(|verdict| &verdict.errors)
+        self.sides[side]
+            .verdict
+            .as_ref()
+            .map(|verdict| &verdict.errors)
     }
 
     /// Goes on, and returns whether there is more to do.

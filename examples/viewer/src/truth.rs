@@ -40,7 +40,9 @@ pub struct Subject {
 impl Subject {
     /// Makes the subject for a picture of `size` pixels, of which fewer are measured.
     pub fn new(settings: &Settings, time: f32, [width, height]: [u32; 2]) -> Self {
-        let shrink = (f64::from(MOST_PIXELS) / f64::from(width * height)).sqrt().min(1.0);
+        let shrink = (f64::from(MOST_PIXELS) / f64::from(width * height))
+            .sqrt()
+            .min(1.0);
         let size = [width, height].map(|side| ((f64::from(side) * shrink) as u32).max(1));
         Self {
             viewpoint: settings.viewpoint,
@@ -86,7 +88,10 @@ impl Truth {
     /// Sorts the triangles for rays. Returns an error where there are none.
     pub fn new(scene: &Scene, subject: Subject, camera: &Camera) -> Result<Self, String> {
         let triangles = scene.triangles(subject.time);
-        if triangles.iter().all(|triangle| triangle.try_normal().is_none()) {
+        if triangles
+            .iter()
+            .all(|triangle| triangle.try_normal().is_none())
+        {
             return Err("there is no surface that rays could meet".to_owned());
         }
         let light = LightInWorld::Far {
@@ -174,7 +179,11 @@ impl Truth {
             let error = verdict.visibilities[number] - pixel.visibility as f32;
             let base = 60.0 + 110.0 * pixel.visibility as f32;
             let strength = error.abs().min(1.0).sqrt();
-            let color = if error < 0.0 { [255.0, 30.0, 20.0] } else { [30.0, 90.0, 255.0] };
+            let color = if error < 0.0 {
+                [255.0, 30.0, 20.0]
+            } else {
+                [30.0, 90.0, 255.0]
+            };
             let [r, g, b] = color.map(|level| (base + (level - base) * strength) as u8);
             [r, g, b, 255]
         })
@@ -216,9 +225,21 @@ mod tests {
             }
         }
         assert!(truth.is_done());
-        let lit = truth.pixels.iter().filter(|pixel| pixel.visibility == 1.0).count();
-        let hidden = truth.pixels.iter().filter(|pixel| pixel.visibility == 0.0).count();
-        assert_eq!(lit + hidden, truth.pixels.len(), "a sun without extent has no penumbra");
+        let lit = truth
+            .pixels
+            .iter()
+            .filter(|pixel| pixel.visibility == 1.0)
+            .count();
+        let hidden = truth
+            .pixels
+            .iter()
+            .filter(|pixel| pixel.visibility == 0.0)
+            .count();
+        assert_eq!(
+            lit + hidden,
+            truth.pixels.len(),
+            "a sun without extent has no penumbra"
+        );
         assert!(hidden > 20 && lit > hidden, "{lit} lit, {hidden} hidden");
         assert_eq!(truth.picture().len(), 4 * 64 * 36);
 

@@ -118,7 +118,8 @@ impl Viewer {
         }
         #[cfg(target_arch = "wasm32")]
         if wants_screenshot {
-            self.state.tell("A page writes no files: use the browser's own picture.");
+            self.state
+                .tell("A page writes no files: use the browser's own picture.");
         }
         let (_, renderer) = self.engine.renderer();
         for id in &textures_delta.free {
@@ -186,6 +187,7 @@ impl Viewer {
                 Request::Truth => self.engine.begin_truth(&mut self.state),
                 Request::StopTruth => self.engine.stop_truth(),
                 Request::Screenshot => wants_screenshot = true,
+                #[cfg(target_arch = "wasm32")]
                 Request::File { name, bytes } => self.open(scene::from_bytes(&bytes, &name)),
                 #[cfg(not(target_arch = "wasm32"))]
                 Request::Path(path) => self.open(scene::from_path(&path)),
@@ -237,8 +239,7 @@ fn paint(
     target: &wgpu::TextureView,
 ) {
     let mut encoder = gpu.encoder();
-    let mut commands =
-        renderer.update_buffers(&gpu.device, &gpu.queue, &mut encoder, jobs, screen);
+    let mut commands = renderer.update_buffers(&gpu.device, &gpu.queue, &mut encoder, jobs, screen);
     let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("panels"),
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {

@@ -107,7 +107,8 @@ mod tests {
 
     #[test]
     fn an_orbit_keeps_the_target() {
-        let mut viewpoint = Viewpoint::new(Vec3::new(3.0, 2.0, 1.0), Vec3::new(0.5, 0.0, -1.0), 0.7);
+        let mut viewpoint =
+            Viewpoint::new(Vec3::new(3.0, 2.0, 1.0), Vec3::new(0.5, 0.0, -1.0), 0.7);
         let target = viewpoint.target();
         viewpoint.orbit(Vec2::new(0.3, -0.2));
         viewpoint.zoom(1.7);

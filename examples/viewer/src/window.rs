@@ -94,7 +94,11 @@ impl ApplicationHandler<Arrival> for App {
         match arrival {
             Arrival::Made(made) => match *made {
                 Ok(mut shown) => {
-                    shown.viewer.state.requests.extend(self.first_request.take());
+                    shown
+                        .viewer
+                        .state
+                        .requests
+                        .extend(self.first_request.take());
                     shown.window.request_redraw();
                     self.shown = Some(shown);
                 }
@@ -171,7 +175,9 @@ impl Shown {
             required_limits: limits(&adapter),
             ..Default::default()
         });
-        let (device, queue) = device.await.map_err(|error| format!("no device: {error}"))?;
+        let (device, queue) = device
+            .await
+            .map_err(|error| format!("no device: {error}"))?;
         let size = window.inner_size();
         let [width, height] = [size.width.max(1), size.height.max(1)];
         let mut configuration = surface
@@ -210,7 +216,8 @@ impl Shown {
         let most = self.viewer.gpu().device.limits().max_texture_dimension_2d;
         self.configuration.width = width.min(most);
         self.configuration.height = height.min(most);
-        self.surface.configure(&self.viewer.gpu().device, &self.configuration);
+        self.surface
+            .configure(&self.viewer.gpu().device, &self.configuration);
         self.window.request_redraw();
     }
 
@@ -220,7 +227,8 @@ impl Shown {
         let texture = match self.surface.get_current_texture() {
             Current::Success(texture) | Current::Suboptimal(texture) => texture,
             Current::Outdated | Current::Lost => {
-                self.surface.configure(&self.viewer.gpu().device, &self.configuration);
+                self.surface
+                    .configure(&self.viewer.gpu().device, &self.configuration);
                 return Duration::ZERO;
             }
             _ => return Duration::from_millis(100),
@@ -229,7 +237,8 @@ impl Shown {
         let view = texture.texture.create_view(&Default::default());
         let size = [texture.texture.width(), texture.texture.height()];
         let result = self.viewer.frame(input, &view, size);
-        self.input.handle_platform_output(&self.window, result.output);
+        self.input
+            .handle_platform_output(&self.window, result.output);
         self.window.pre_present_notify();
         self.viewer.gpu().queue.present(texture);
         result.repaint_after

@@ -66,7 +66,11 @@ fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
     let attributes = Window::default_attributes()
         .with_title("wgpu-shadows")
         .with_inner_size(LogicalSize::new(size[0], size[1]));
-    Ok(window::run(address, arguments.file.map(Request::Path), attributes)?)
+    Ok(window::run(
+        address,
+        arguments.file.map(Request::Path),
+        attributes,
+    )?)
 }
 
 /// Runs the loop until the window is closed.

@@ -33,10 +33,9 @@ pub fn scene() -> Scene {
         boxes.push(cuboid(Vec3::new(x, 1.3, z), half, wood));
     }
     // A board that leans, from contact to a height of two metres.
-    let lean = Mat4::from_rotation_translation(
-        Quat::from_rotation_z(0.5),
-        Vec3::new(-4.2, 0.95, -1.9),
-    ) * Mat4::from_scale(Vec3::new(2.0, 0.04, 0.6));
+    let lean =
+        Mat4::from_rotation_translation(Quat::from_rotation_z(0.5), Vec3::new(-4.2, 0.95, -1.9))
+            * Mat4::from_scale(Vec3::new(2.0, 0.04, 0.6));
     boxes.push(plain(lean, Vec3::new(0.30, 0.42, 0.55)));
     let ball = |x: f32, height: f32, z: f32, radius: f32, albedo: [f32; 3]| {
         let place = Vec3::new(x, height, z);
@@ -58,6 +57,11 @@ pub fn scene() -> Scene {
     Scene {
         sun_degrees: 3.0,
         sides: [SideSettings::textbook(16.0), soft],
-        ..day("penumbrae", models, viewpoint, Vec3::new(-0.55, 0.62, -0.42))
+        ..day(
+            "penumbrae",
+            models,
+            viewpoint,
+            Vec3::new(-0.55, 0.62, -0.42),
+        )
     }
 }

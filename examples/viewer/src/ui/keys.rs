@@ -84,7 +84,10 @@ fn fly(input: &egui::InputState, state: &mut State) {
     );
     if way != Vec3::ZERO {
         let speed = if input.modifiers.shift { 2.0 } else { 0.4 };
-        state.settings.viewpoint.fly(way.normalize() * speed * input.stable_dt.min(0.1));
+        state
+            .settings
+            .viewpoint
+            .fly(way.normalize() * speed * input.stable_dt.min(0.1));
     }
 }
 

@@ -30,11 +30,15 @@ pub fn show(ui: &mut egui::Ui, state: &mut State, engine: &mut Engine) {
     egui::Panel::left("settings")
         .resizable(false)
         .exact_size(PANEL_WIDTH)
-        .show(ui, |ui| scroll(ui, "settings", |ui| settings::show(ui, state, engine)));
+        .show(ui, |ui| {
+            scroll(ui, "settings", |ui| settings::show(ui, state, engine))
+        });
     egui::Panel::right("results")
         .resizable(false)
         .exact_size(PANEL_WIDTH)
-        .show(ui, |ui| scroll(ui, "results", |ui| results::show(ui, state, engine)));
+        .show(ui, |ui| {
+            scroll(ui, "results", |ui| results::show(ui, state, engine))
+        });
     if !state.messages.is_empty() {
         egui::Panel::top("messages").show(ui, |ui| messages(ui, state));
     }

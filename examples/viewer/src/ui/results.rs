@@ -17,35 +17,52 @@ pub fn show(ui: &mut Ui, state: &mut State, engine: &mut Engine) {
 fn cost(ui: &mut Ui, engine: &Engine) {
     heading(ui, "Cost of a frame");
     let costs = [0, 1].map(|side| engine.cost(side));
-    Grid::new("cost").num_columns(3).min_col_width(56.0).show(ui, |ui| {
-        ui.label("");
-        ui.strong("left");
-        ui.strong("right");
-        ui.end_row();
-        let mut row = |name: &str, told: &str, value: fn(&Cost) -> String| {
-            ui.label(name).on_hover_text(told);
-            for cost in &costs {
-                ui.label(cost.as_ref().map_or("-".to_owned(), value));
-            }
+    Grid::new("cost")
+        .num_columns(3)
+        .min_col_width(56.0)
+        .show(ui, |ui| {
+            ui.label("");
+            ui.strong("left");
+            ui.strong("right");
             ui.end_row();
-        };
-        row("passes", "Depth passes of the last frame", |cost| cost.passes.to_string());
-        row("draws", "Casters drawn in those passes", |cost| cost.draws.to_string());
-        row("triangles", "Triangles drawn in those passes", |cost| count(cost.triangles));
-        row("texels drawn", "Texels of the maps that were drawn", |cost| count(cost.texels));
-        row("memory", "Of maps and caches", |cost| {
-            format!("{:.1} MB", cost.bytes as f64 / 1e6)
+            let mut row = |name: &str, told: &str, value: fn(&Cost) -> String| {
+                ui.label(name).on_hover_text(told);
+                for cost in &costs {
+                    ui.label(cost.as_ref().map_or("-".to_owned(), value));
+                }
+                ui.end_row();
+            };
+            row("passes", "Depth passes of the last frame", |cost| {
+                cost.passes.to_string()
+            });
+            row("draws", "Casters drawn in those passes", |cost| {
+                cost.draws.to_string()
+            });
+            row("triangles", "Triangles drawn in those passes", |cost| {
+                count(cost.triangles)
+            });
+            row(
+                "texels drawn",
+                "Texels of the maps that were drawn",
+                |cost| count(cost.texels),
+            );
+            row("memory", "Of maps and caches", |cost| {
+                format!("{:.1} MB", cost.bytes as f64 / 1e6)
+            });
+            row(
+                "record, CPU",
+                "Checks, fit, cull, and the recording of the passes",
+                |cost| format!("{:.2} ms", cost.record_ms),
+            );
+            row(
+                "maps, device",
+                "By timestamps, of the last frame that had any",
+                |cost| match cost.device_ms {
+                    Some(ms) => format!("{ms:.2} ms"),
+                    None => "unknown".to_owned(),
+                },
+            );
         });
-        row("record, CPU", "Checks, fit, cull, and the recording of the passes", |cost| {
-            format!("{:.2} ms", cost.record_ms)
-        });
-        row("maps, device", "By timestamps, of the last frame that had any", |cost| {
-            match cost.device_ms {
-                Some(ms) => format!("{ms:.2} ms"),
-                None => "unknown".to_owned(),
-            }
-        });
-    });
     ui.small("What does not change is kept: draws are zero where nothing moves.");
 }
 
@@ -112,7 +129,13 @@ fn slice_text(slice: &SliceReport, height: u32) -> String {
 }
 
 fn summary(ui: &mut Ui, name: &str, report: &ShadowReport) {
-    let of = |status| report.views.iter().filter(|view| view.status == status).count();
+    let of = |status| {
+        report
+            .views
+            .iter()
+            .filter(|view| view.status == status)
+            .count()
+    };
     ui.small(format!(
         "{name}: {} views; {} drawn, {} kept, {} deferred, {} empty",
         report.views.len(),

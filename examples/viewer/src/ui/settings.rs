@@ -3,6 +3,7 @@
 use egui::{ComboBox, Slider, Ui};
 
 use super::{heading, side};
+use crate::address;
 use crate::engine::Engine;
 use crate::scene;
 use crate::settings::Show;
@@ -16,7 +17,11 @@ pub fn show(ui: &mut Ui, state: &mut State, engine: &Engine) {
     ui.horizontal(|ui| {
         ui.selectable_value(&mut state.edited_side, 0, "Left side");
         ui.selectable_value(&mut state.edited_side, 1, "Right side");
-        if ui.button("Exchange").on_hover_text("Exchanges left and right.").clicked() {
+        if ui
+            .button("Exchange")
+            .on_hover_text("Exchanges left and right.")
+            .clicked()
+        {
             state.settings.sides.swap(0, 1);
         }
     });
@@ -43,6 +48,14 @@ fn scene_choice(ui: &mut Ui, state: &mut State, engine: &Engine) {
             state.is_help_open = !state.is_help_open;
         }
     });
+    let told = "Copies all settings, as the page has them in its address and --address takes them.";
+    if ui
+        .small_button("Copy settings")
+        .on_hover_text(told)
+        .clicked()
+    {
+        ui.ctx().copy_text(address::write(&state.settings));
+    }
     ui.small("Drop a .glb file on the window to see it.");
     for note in &engine.scene().notes {
         ui.small(note);
@@ -52,8 +65,14 @@ fn scene_choice(ui: &mut Ui, state: &mut State, engine: &Engine) {
 fn light(ui: &mut Ui, state: &mut State) {
     heading(ui, "Light");
     ui.horizontal(|ui| {
-        let hour = Slider::new(&mut state.hour, 6.0..=18.0).text("o'clock").fixed_decimals(1);
-        if ui.add(hour).on_hover_text("Time of a day in spring at 40 degrees north").changed() {
+        let hour = Slider::new(&mut state.hour, 6.0..=18.0)
+            .text("o'clock")
+            .fixed_decimals(1);
+        if ui
+            .add(hour)
+            .on_hover_text("Time of a day in spring at 40 degrees north")
+            .changed()
+        {
             state.settings.set_hour(state.hour);
         }
         ui.checkbox(&mut state.day_passes, "day");
@@ -106,7 +125,10 @@ fn picture(ui: &mut Ui, state: &mut State, engine: &Engine) {
         *number = (*number).min(last);
         ui.add(Slider::new(number, 0..=last).text("number"));
     }
-    ui.checkbox(&mut settings.is_split, "left and right side, with a divider to drag");
+    ui.checkbox(
+        &mut settings.is_split,
+        "left and right side, with a divider to drag",
+    );
     ui.add(
         Slider::new(&mut settings.picture_scale, 0.25..=2.0)
             .text("pixels per pixel")

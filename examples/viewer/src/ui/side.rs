@@ -25,7 +25,9 @@ pub fn show(ui: &mut Ui, state: &mut State, scene: &Scene) {
     }
     ui.horizontal(|ui| {
         let speed = side.max_distance.max(1.0) * 0.02;
-        let end = DragValue::new(&mut side.max_distance).range(0.0..=1e6).speed(speed);
+        let end = DragValue::new(&mut side.max_distance)
+            .range(0.0..=1e6)
+            .speed(speed);
         ui.add(end).on_hover_text(
             "The distance from the camera at which shadows end, in world units; 0 for no end.",
         );
@@ -60,7 +62,11 @@ fn presets(ui: &mut Ui, side: &mut SideSettings, scene: &Scene) {
                 *side = settings;
             }
         };
-        preset("Textbook", "One map of the scene, slope bias, 3×3 box", textbook);
+        preset(
+            "Textbook",
+            "One map of the scene, slope bias, 3×3 box",
+            textbook,
+        );
         let cheap = SideSettings {
             map_size: 1024,
             filter: Filter::Hardware,
@@ -77,7 +83,11 @@ fn presets(ui: &mut Ui, side: &mut SideSettings, scene: &Scene) {
             filter: Filter::Tent5 { sharpness: 4.0 },
             ..library
         };
-        preset("Accurate", "Tent over 6×6 texels, 4096 texels a side", accurate);
+        preset(
+            "Accurate",
+            "Tent over 6×6 texels, 4096 texels a side",
+            accurate,
+        );
         let soft = SideSettings {
             filter: Filter::Pcss { light_size: 1.0 },
             ..library
@@ -87,7 +97,11 @@ fn presets(ui: &mut Ui, side: &mut SideSettings, scene: &Scene) {
 }
 
 fn filter(ui: &mut Ui, label: &str, filter: &mut Filter, is_cube: bool) {
-    let sharpness = if filter.sharpness() > 1.0 { filter.sharpness() } else { 3.0 };
+    let sharpness = if filter.sharpness() > 1.0 {
+        filter.sharpness()
+    } else {
+        3.0
+    };
     let mut choices = vec![
         Filter::Nearest,
         Filter::Hardware,
@@ -108,7 +122,10 @@ fn filter(ui: &mut Ui, label: &str, filter: &mut Filter, is_cube: bool) {
         .show_ui(ui, |ui| {
             for choice in choices {
                 let is_chosen = filter_name(*filter) == filter_name(choice);
-                if ui.selectable_label(is_chosen, filter_name(choice)).clicked() {
+                if ui
+                    .selectable_label(is_chosen, filter_name(choice))
+                    .clicked()
+                {
                     *filter = choice;
                 }
             }
@@ -118,10 +135,18 @@ fn filter(ui: &mut Ui, label: &str, filter: &mut Filter, is_cube: bool) {
         | Filter::Tent3 { sharpness }
         | Filter::Tent5 { sharpness }
         | Filter::Tent7 { sharpness } => {
-            ui.add(Slider::new(sharpness, 1.0..=12.0).text("sharpness").step_by(0.25));
+            ui.add(
+                Slider::new(sharpness, 1.0..=12.0)
+                    .text("sharpness")
+                    .step_by(0.25),
+            );
         }
         Filter::DirectionGrid { radius } | Filter::DirectionStar { radius } => {
-            ui.add(Slider::new(radius, 0.005..=0.5).text("radius").logarithmic(true));
+            ui.add(
+                Slider::new(radius, 0.005..=0.5)
+                    .text("radius")
+                    .logarithmic(true),
+            );
         }
         _ => {}
     }
@@ -178,7 +203,9 @@ fn map_size(ui: &mut Ui, label: &str, size: &mut u32, most: u32) {
     ComboBox::from_label(label)
         .selected_text(size.to_string())
         .show_ui(ui, |ui| {
-            let sizes = (6..14).map(|power| 1_u32 << power).filter(|size| *size <= most);
+            let sizes = (6..14)
+                .map(|power| 1_u32 << power)
+                .filter(|size| *size <= most);
             for choice in sizes {
                 ui.selectable_value(size, choice, choice.to_string());
             }

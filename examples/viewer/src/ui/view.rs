@@ -85,10 +85,7 @@ fn move_divider(ui: &Ui, rect: Rect, state: &mut State) -> bool {
         return false;
     }
     let x = rect.left() + state.settings.divider * rect.width();
-    let grip = Rect::from_min_max(
-        pos2(x - GRIP, rect.top()),
-        pos2(x + GRIP, rect.bottom()),
-    );
+    let grip = Rect::from_min_max(pos2(x - GRIP, rect.top()), pos2(x + GRIP, rect.bottom()));
     let id = ui.scope_id().with("divider");
     let response = ui
         .interact(grip, id, Sense::drag())
@@ -133,17 +130,37 @@ fn divider(ui: &Ui, rect: Rect, state: &State, engine: &Engine) {
             Color32::WHITE,
             Stroke::new(1.5, Color32::from_gray(40)),
         );
-        label(ui, pos2(x - 10.0, rect.top() + 10.0), egui::Align2::RIGHT_TOP, &engine.title(settings, 0));
-        label(ui, pos2(x + 10.0, rect.top() + 10.0), egui::Align2::LEFT_TOP, &engine.title(settings, 1));
+        label(
+            ui,
+            pos2(x - 10.0, rect.top() + 10.0),
+            egui::Align2::RIGHT_TOP,
+            &engine.title(settings, 0),
+        );
+        label(
+            ui,
+            pos2(x + 10.0, rect.top() + 10.0),
+            egui::Align2::LEFT_TOP,
+            &engine.title(settings, 1),
+        );
     } else {
         let title = engine.title(settings, state.edited_side);
-        label(ui, rect.left_top() + vec2(10.0, 10.0), egui::Align2::LEFT_TOP, &title);
+        label(
+            ui,
+            rect.left_top() + vec2(10.0, 10.0),
+            egui::Align2::LEFT_TOP,
+            &title,
+        );
     }
 }
 
 fn hints(ui: &Ui, rect: Rect, engine: &Engine) {
     let corner = rect.left_bottom() + vec2(10.0, -10.0);
-    label(ui, corner, egui::Align2::LEFT_BOTTOM, &engine.gpu().describe());
+    label(
+        ui,
+        corner,
+        egui::Align2::LEFT_BOTTOM,
+        &engine.gpu().describe(),
+    );
 }
 
 fn label(ui: &Ui, place: egui::Pos2, align: egui::Align2, text: &str) {
