@@ -333,7 +333,8 @@ mod tests {
     #[test]
     fn nonsense_is_told_and_leaves_the_settings_alone() {
         let mut settings = unusual();
-        let text = "eye=1,2&left.filter=tent9,1&sun=a,b,c&view=NaN&left.map=0&middle.map=1&x=y&left.bias=manual,1";
+        let text = "eye=1,2&left.filter=tent9,1&sun=a,b,c&view=NaN&left.map=0&middle.map=1&x=y\
+                    &left.bias=manual,1";
         assert_eq!(read(text, &mut settings).len(), 8);
         assert_eq!(settings, unusual());
     }

@@ -106,10 +106,10 @@ impl Engine {
 
     /// Returns the picture as egui knows it, after it has been made for `size` pixels.
     pub fn picture(&mut self, size: [u32; 2]) -> Result<TextureId, String> {
-        if let Some((picture, id)) = &self.picture {
-            if picture.size == size {
-                return Ok(*id);
-            }
+        if let Some((picture, id)) = &self.picture
+            && picture.size == size
+        {
+            return Ok(*id);
         }
         let picture = Picture::new(&self.gpu, size)?;
         let view = picture.color.create_view(&Default::default());

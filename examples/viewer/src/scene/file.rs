@@ -154,7 +154,8 @@ mod tests {
     /// Returns a .glb file of one triangle, red and of two sides.
     fn triangle() -> Vec<u8> {
         let mut json = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
-            "nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],
+            "nodes":[{"mesh":0}],
+            "meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],
             "materials":[{"doubleSided":true,"pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1]}}],
             "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",
             "min":[0,0,0],"max":[1,1,0]}],"bufferViews":[{"buffer":0,"byteLength":36}],
