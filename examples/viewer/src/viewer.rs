@@ -17,9 +17,11 @@ pub struct Viewer {
     pub context: egui::Context,
     pub state: State,
     engine: Engine,
+    #[cfg(not(target_arch = "wasm32"))]
     format: wgpu::TextureFormat,
     /// Is the time of egui at the last frame, in seconds.
     last_time: f64,
+    #[cfg(not(target_arch = "wasm32"))]
     screenshots: u32,
 }
 
@@ -58,8 +60,10 @@ impl Viewer {
             context,
             state,
             engine: Engine::new(gpu, format, scene)?,
+            #[cfg(not(target_arch = "wasm32"))]
             format,
             last_time: 0.0,
+            #[cfg(not(target_arch = "wasm32"))]
             screenshots: 0,
         })
     }

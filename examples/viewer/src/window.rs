@@ -15,6 +15,9 @@ use crate::host;
 use crate::state::Request;
 use crate::viewer::Viewer;
 
+/// Is the least time between two writings of the address: browsers refuse more.
+const ADDRESS_PAUSE: Duration = Duration::from_millis(500);
+
 /// Is what comes to the window from beside its events.
 pub enum Arrival {
     /// The device is there, or there is none.
@@ -41,6 +44,8 @@ pub struct App {
     first_request: Option<Request>,
     attributes: WindowAttributes,
     shown: Option<Shown>,
+    /// Is when the address was last written.
+    address_kept: Instant,
     /// Is when the next frame is wanted, if not at once.
     next_frame: Option<Instant>,
     /// Is why the window was closed before it showed anything.
@@ -61,6 +66,7 @@ pub fn run(
         first_request,
         attributes,
         shown: None,
+        address_kept: Instant::now(),
         next_frame: None,
         failure: None,
     };
@@ -99,6 +105,9 @@ impl ApplicationHandler<Arrival> for App {
                         .state
                         .requests
                         .extend(self.first_request.take());
+                    // On a page the canvas may have found its size meanwhile.
+                    let size = shown.window.inner_size();
+                    shown.resize([size.width, size.height]);
                     shown.window.request_redraw();
                     self.shown = Some(shown);
                 }
@@ -126,10 +135,16 @@ impl ApplicationHandler<Arrival> for App {
             WindowEvent::CloseRequested => event_loop.exit(),
             WindowEvent::Resized(size) => shown.resize([size.width, size.height]),
             WindowEvent::RedrawRequested => {
-                let wait = shown.redraw();
+                let mut wait = shown.redraw();
+                if self.address_kept.elapsed() > ADDRESS_PAUSE {
+                    self.address_kept = Instant::now();
+                    host::keep_address(&shown.viewer.state.settings);
+                } else if cfg!(target_arch = "wasm32") {
+                    // A later frame keeps what this one may not.
+                    wait = wait.min(ADDRESS_PAUSE);
+                }
                 // A time that no clock reaches is no time.
                 self.next_frame = Instant::now().checked_add(wait);
-                host::keep_address(&shown.viewer.state.settings);
             }
             _ => {}
         }
