@@ -13,13 +13,16 @@ const FLAGS = [
   ...(process.getuid() === 0 ? ['--no-sandbox'] : []),
 ];
 
-// Calls `body(page, problems)`. `problems` collects what the page says: warnings, errors and exceptions.
-export async function withPage(body) {
+function answerEmpty(_, response) {
+  response.setHeader('content-type', 'text/html');
+  response.end('<!doctype html><link rel="icon" href="data:,"><title>checks</title>');
+}
+
+// Calls `body(page, problems)` at `page.base`, which `answer(request, response)` serves. `problems` collects what the page
+// says: warnings, errors and exceptions.
+export async function withPage(body, answer = answerEmpty) {
   // WebGPU is there only for pages of a secure context, which those of the local machine are.
-  const server = http.createServer((_, response) => {
-    response.setHeader('content-type', 'text/html');
-    response.end('<!doctype html><link rel="icon" href="data:,"><title>checks</title>');
-  });
+  const server = http.createServer(answer);
   await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
   const executablePath = process.env.CHROMIUM ?? '/usr/bin/chromium';
   const browser = await chromium.launch({ executablePath, headless: true, args: FLAGS });
@@ -31,7 +34,8 @@ export async function withPage(body) {
     });
     page.on('pageerror', (error) => problems.push(`exception: ${error}`));
     page.on('crash', () => problems.push('the page crashed'));
-    await page.goto(`http://127.0.0.1:${server.address().port}/`);
+    page.base = `http://127.0.0.1:${server.address().port}/`;
+    if (answer === answerEmpty) await page.goto(page.base);
     console.log(`Chromium ${browser.version()}`);
     return await body(page, problems);
   } finally {

@@ -7,19 +7,17 @@
 //! four maps.
 //!
 //! ```text
-//! town.rs          streets, blocks, houses and towers
-//! plot.rs          what stands on one block
+//! town.rs          the town on the device
 //! flight.rs        the motion of the camera
 //! sun.rs           the sun's shadows, and the images that they are in
 //! density.rs       how many texels a pixel covers
 //! table.rs         what the frames cost
 //! city.wgsl        the fragment stages
-//! ../support       meshes and Blinn-Phong
+//! ../support       the town's plan, meshes, casters and Blinn-Phong
 //! ```
 
 mod density;
 mod flight;
-mod plot;
 mod sun;
 mod table;
 mod town;

@@ -1,29 +1,19 @@
-//! Generates streets in a grid, blocks between them, and everything on them in one instance buffer.
-
-use std::ops::Range;
+//! Holds the town on the device: everything in one instance buffer.
 
 use example_support::mesh::{Instance, Mesh, Vertex, cube, sphere, vertex_buffer};
 use example_support::phong::Batch;
-use glam::{Mat4, Vec2, Vec3};
-use shadow_support::random::Random;
+use example_support::town::Plan;
+use glam::Mat4;
 use wgpu_shadows::{
     Aabb, CasterPipeline, InstancedMeshCaster, caster::CasterPipelineDescriptor,
     caster::CasterVertex, caster::InstancedMeshCasterDescriptor, caster::MeshIndices,
     caster::ModelTransform, caster::PositionAttribute, error::CasterError,
 };
 
-use crate::plot::{self, BLOCK_SIDE, Part, Shape};
-
-/// Is the distance from the middle of one street to the middle of the next.
-pub const STREET_SPACING: f32 = BLOCK_SIDE + 14.0;
-
 /// Is the number of blocks along each side of the town.
 const BLOCKS: i32 = 18;
 
-/// Is the height of the kerbs.
-const KERB: f32 = 0.15;
-
-/// Holds the town. Streets run along x and z; one of each passes through the middle.
+/// Holds the town.
 pub struct Town {
     /// Holds all buildings: the boxes, and the domes.
     pub casters: [InstancedMeshCaster; 2],
@@ -40,49 +30,29 @@ pub struct Town {
 
 impl Town {
     pub fn new(device: &wgpu::Device) -> Result<Self, CasterError> {
-        let mut random = Random::new(5);
-        let mut pavements = vec![street()];
-        let (mut boxes, mut domes) = (Vec::new(), Vec::new());
-        for (column, row) in (0..BLOCKS).flat_map(|x| (0..BLOCKS).map(move |z| (x, z))) {
-            let cell = Vec2::new(column as f32, row as f32) + 0.5 - BLOCKS as f32 * 0.5;
-            let center = cell * STREET_SPACING;
-            let half = Vec2::splat(BLOCK_SIDE * 0.5);
-            let slab = Vec3::new(0.46, 0.45, 0.43);
-            pavements.push(plot::upright(center, half, 0.0, KERB, slab));
-            // Buildings are higher toward the middle.
-            let eaves = 9.0 + 16.0 * (-cell.length_squared() / 30.0).exp();
-            for part in plot::block(&mut random, center, eaves) {
-                match part.shape {
-                    Shape::Box => boxes.push(part),
-                    Shape::Dome => domes.push(part),
-                }
-            }
-        }
-        let first_building = pavements.len() as u32;
-        let first_dome = first_building + boxes.len() as u32;
-        let parts: Vec<Part> = pavements.into_iter().chain(boxes).chain(domes).collect();
-        let instances: Vec<Instance> = parts.iter().map(|part| part.instance).collect();
-        let instances = vertex_buffer(device, &instances);
+        let Plan {
+            ground,
+            houses,
+            domes,
+            ground_bounds,
+        } = Plan::new(BLOCKS);
         let box_mesh = Mesh::new(device, &cube());
         let dome_mesh = Mesh::new(device, &sphere(24));
         let pipeline = caster_pipeline(device)?;
-        let casters = |mesh, range: Range<u32>| {
-            let parts = &parts[range.start as usize..range.end as usize];
-            copies(device, &pipeline, mesh, parts)
-        };
-        let instance_count = parts.len() as u32;
         let casters = [
-            casters(&box_mesh, first_building..first_dome)?,
-            casters(&dome_mesh, first_dome..instance_count)?,
+            copies(device, &pipeline, &box_mesh, &houses)?,
+            copies(device, &pipeline, &dome_mesh, &domes)?,
         ];
+        let first_dome = (ground.len() + houses.len()) as u32;
+        let instances: Vec<Instance> = ground.into_iter().chain(houses).chain(domes).collect();
         Ok(Self {
             casters,
-            ground: ground(),
+            ground: ground_bounds,
             box_mesh,
             dome_mesh,
-            instances,
+            instance_count: instances.len() as u32,
+            instances: vertex_buffer(device, &instances),
             first_dome,
-            instance_count,
         })
     }
 
@@ -100,30 +70,14 @@ impl Town {
     }
 }
 
-/// Returns the bounds of streets and pavements.
-fn ground() -> Aabb {
-    let reach = BLOCKS as f32 * 0.5 * STREET_SPACING;
-    Aabb::new(
-        Vec3::new(-reach, 0.0, -reach),
-        Vec3::new(reach, KERB, reach),
-    )
-}
-
-/// Returns one slab of asphalt under everything.
-fn street() -> Part {
-    let half = ground().max.x;
-    let asphalt = Vec3::new(0.20, 0.20, 0.21);
-    plot::upright(Vec2::ZERO, Vec2::splat(half), -1.0, 0.0, asphalt)
-}
-
 /// Makes one caster of many buildings, each of which is culled by itself.
 fn copies(
     device: &wgpu::Device,
     pipeline: &CasterPipeline,
     mesh: &Mesh,
-    parts: &[Part],
+    instances: &[Instance],
 ) -> Result<InstancedMeshCaster, CasterError> {
-    let transforms = parts.iter().map(|part| part.instance.render_from_model);
+    let transforms = instances.iter().map(|instance| instance.render_from_model);
     let transforms: Vec<Mat4> = transforms.collect();
     let descriptor = InstancedMeshCasterDescriptor {
         label: Some("buildings"),

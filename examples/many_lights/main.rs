@@ -8,17 +8,14 @@
 //! on.
 //!
 //! ```text
-//! hall.rs          floor, walls, skylight, columns, and objects
-//! lights.rs        where the lights are, and how they move
+//! hall.rs          the hall on the device
 //! shadows.rs       the sun, two pools, and one bind group for all of them
 //! painter.rs       the images
 //! table.rs         what a frame cost
-//! hall.wgsl        the fragment stage: loops over the lights
-//! ../support       meshes and Blinn-Phong
+//! ../support       the hall and its lights, meshes and Blinn-Phong
 //! ```
 
 mod hall;
-mod lights;
 mod painter;
 mod shadows;
 mod table;
@@ -28,11 +25,12 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
+use example_support::camera::Camera;
+use example_support::hall::{EYE, FIELD_OF_VIEW_RADIANS, TARGET, lights::Lights};
 use example_support::{arguments, picture};
 use shadow_support::gpu::{Gpu, GpuRequest};
 
 use hall::Hall;
-use lights::Lights;
 use painter::Painter;
 use shadows::Shadows;
 
@@ -67,8 +65,8 @@ fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
     let painter = Painter::new(&gpu, shadows.bindings());
     println!("{} meshes cast", casters.len());
     for frame in 0..arguments.frames {
-        let lights = Lights::at(frame);
-        let camera = hall::camera(SIZE);
+        let lights = Lights::at(frame as f32);
+        let camera = Camera::new(EYE, TARGET, FIELD_OF_VIEW_RADIANS, SIZE);
         let budget = (frame > 0).then_some(arguments.budget);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         shadows.record(&mut encoder, &lights, &camera, &casters, budget)?;

@@ -3,6 +3,7 @@
 use std::error::Error;
 
 use example_support::camera::Camera;
+use example_support::hall::lights::{LAMPS, LightUniform, Lights, SPOTS, TOWARD_SUN};
 use example_support::mesh::{Instance, Mesh, sphere, vertex_buffer};
 use example_support::phong::{Batch, Lighting, Phong, PhongDescriptor, Picture};
 use example_support::picture::halved;
@@ -13,7 +14,6 @@ use wgpu_shadows::ShadowBindings;
 
 use crate::SIZE;
 use crate::hall::Hall;
-use crate::lights::{LAMPS, LightUniform, Lights, SPOTS, TOWARD_SUN};
 use crate::shadows::Shadows;
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
@@ -63,7 +63,7 @@ impl Painter {
         });
         let descriptor = PhongDescriptor {
             visibility_wgsl: shadows.wgsl(),
-            fragment_wgsl: include_str!("hall.wgsl"),
+            fragment_wgsl: example_support::hall::FRAGMENT_WGSL,
             fragment_entry: "fragment",
             shadow_group: shadows.group(),
             shadow_layout: shadows.layout(),

@@ -3,6 +3,7 @@
 use std::error::Error;
 
 use example_support::camera::Camera;
+use example_support::hall::lights::{LAMPS, Lights, SPOTS, TOWARD_SUN};
 use glam::DVec3;
 use wgpu_shadows::{
     Casters, Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
@@ -10,8 +11,6 @@ use wgpu_shadows::{
     pool::OmniShadowPool, pool::PoolDescriptor, pool::PoolLight, pool::ShadowSlot,
     pool::SpotShadowPool, report::ShadowReport,
 };
-
-use crate::lights::{LAMPS, Lights, SPOTS, TOWARD_SUN};
 
 pub struct Shadows {
     scene: ShadowScene,

@@ -1,8 +1,8 @@
-//! Builds the tutorial's scene: a floor of 50 by 50, three cubes, and a sun that shines from (-2,
-//! 4, -1) to the origin.
+//! Holds the tutorial's scene on the device, and what its maps cover.
 
-use example_support::mesh::{Instance, Object, Vertex, cube, square};
-use glam::{Mat4, Quat, Vec3};
+use example_support::mesh::{Object, Vertex};
+use example_support::textbook;
+use glam::Vec3;
 use wgpu_shadows::{
     Aabb, CameraView, CasterPipeline, Coverage, DirectionalLight, MeshCaster,
     caster::CasterPipelineDescriptor, caster::CasterVertex, caster::ModelTransform,
@@ -42,38 +42,12 @@ pub struct Scene {
 
 impl Scene {
     pub fn new(device: &wgpu::Device) -> Self {
-        let floor = Instance {
-            render_from_model: Mat4::from_translation(Vec3::new(0.0, -0.5, 0.0))
-                * Mat4::from_scale(Vec3::splat(25.0)),
-            albedo: Vec3::new(0.58, 0.50, 0.40),
-            checker: 0.12,
-        };
-        let mesh = cube();
-        let cube = |center, half, rotation, albedo| {
-            let scale = Vec3::splat(half);
-            let instance = Instance {
-                render_from_model: Mat4::from_scale_rotation_translation(scale, rotation, center),
-                albedo,
-                checker: 0.0,
-            };
-            Object::new(device, &mesh, instance)
-        };
-        let (red, green, blue) = (
-            Vec3::new(0.75, 0.30, 0.20),
-            Vec3::new(0.35, 0.55, 0.30),
-            Vec3::new(0.25, 0.42, 0.70),
-        );
-        let upright = Quat::IDENTITY;
-        let diagonal = Vec3::new(1.0, 0.0, 1.0).normalize();
-        let tilted = Quat::from_axis_angle(diagonal, 60_f32.to_radians());
+        let [floor, cubes @ ..] =
+            textbook::parts().map(|(mesh, instance)| Object::new(device, &mesh, instance));
         Self {
-            floor: Object::new(device, &square(Vec3::Y, 0.0), floor),
-            cubes: [
-                cube(Vec3::new(0.0, 1.5, 0.0), 0.5, upright, red),
-                cube(Vec3::new(2.0, 0.0, 1.0), 0.5, upright, green),
-                cube(Vec3::new(-1.0, 0.0, 2.0), 0.25, tilted, blue),
-            ],
-            toward_light: Vec3::new(-2.0, 4.0, -1.0).normalize(),
+            floor,
+            cubes,
+            toward_light: textbook::TOWARD_SUN.normalize(),
         }
     }
 

@@ -1,5 +1,6 @@
 //! Defines the steps: what each changes in the tutorial's set-up, and what it shows.
 
+use example_support::textbook::{BIAS_CONSTANT, BIAS_SLOPE};
 use wgpu_shadows::{Bias, CascadeSplit, DirectionalShadowDescriptor, Filter};
 
 use crate::scene::MapRegion;
@@ -32,10 +33,6 @@ pub struct Step {
     pub show: Show,
 }
 
-/// Is the tutorial's bias of 0.005 and 0.05, which is there in units of a depth range of 6.5.
-const TUTORIAL_CONSTANT: f32 = 0.005 * 6.5;
-const TUTORIAL_SLOPE: f32 = 0.05 * 6.5;
-
 /// Returns a step of the tutorial, hard-edged, with a manual bias.
 const fn textbook(file: &'static str, sentence: &'static str, constant: f32, slope: f32) -> Step {
     Step {
@@ -59,7 +56,7 @@ const fn textbook(file: &'static str, sentence: &'static str, constant: f32, slo
 
 /// Returns all steps, in order.
 pub fn steps() -> Vec<Step> {
-    let slope_bias = |file, sentence| textbook(file, sentence, TUTORIAL_CONSTANT, TUTORIAL_SLOPE);
+    let slope_bias = |file, sentence| textbook(file, sentence, BIAS_CONSTANT, BIAS_SLOPE);
     let boxed = |step: Step| Step {
         shadow: DirectionalShadowDescriptor {
             filter: Filter::Box,
@@ -77,7 +74,7 @@ pub fn steps() -> Vec<Step> {
         textbook(
             "02-constant-bias.png",
             "A constant bias clears the floor and the tops; the cubes' sides, steep to the light, stay speckled.",
-            TUTORIAL_CONSTANT,
+            BIAS_CONSTANT,
             0.0,
         ),
         slope_bias(

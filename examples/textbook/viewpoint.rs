@@ -1,6 +1,7 @@
 //! Defines the cameras.
 
 use example_support::camera::Camera;
+use example_support::textbook;
 use glam::Vec3;
 
 /// Selects a camera.
@@ -16,9 +17,9 @@ impl Viewpoint {
     /// Returns the camera for images of `size` pixels.
     pub fn camera(self, size: [u32; 2]) -> Camera {
         let (eye, target) = match self {
-            Self::Close => (Vec3::new(5.8, 3.1, -3.8), Vec3::new(0.75, 0.45, 0.75)),
+            Self::Close => (textbook::EYE, textbook::TARGET),
             Self::Wide => (Vec3::new(2.6, 6.0, -11.5), Vec3::new(1.6, 0.0, 0.6)),
         };
-        Camera::new(eye, target, 0.55, size)
+        Camera::new(eye, target, textbook::FIELD_OF_VIEW_RADIANS, size)
     }
 }

@@ -10,7 +10,8 @@ use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use crate::camera::Camera;
 use crate::mesh::{Instance, Mesh, Object, Vertex};
 
-const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// Is the format of the depth attachment.
+pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 /// Describes what a [`Phong`] is made of.
 pub struct PhongDescriptor<'a> {
@@ -143,7 +144,6 @@ impl Phong {
             shadows,
             target,
         } = *picture;
-        let frame = self.frame(gpu, camera, lighting);
         let size = [target.width(), target.height()];
         let depth = gpu.target(DEPTH_FORMAT, size, self.sample_count);
         let multisampled = gpu.target(self.format, size, self.sample_count);
@@ -178,6 +178,21 @@ impl Phong {
             }),
             ..Default::default()
         });
+        self.draw_in_pass(gpu, &mut pass, camera, lighting, shadows, batches);
+    }
+
+    /// Draws `batches` in a pass of the caller's own, with a colour target and samples like those
+    /// of this pipeline and a [`DEPTH_FORMAT`] attachment of reversed depth.
+    pub fn draw_in_pass<'a>(
+        &self,
+        gpu: &Gpu,
+        pass: &mut wgpu::RenderPass<'_>,
+        camera: &Camera,
+        lighting: &Lighting,
+        shadows: &wgpu::BindGroup,
+        batches: impl IntoIterator<Item = Batch<'a>>,
+    ) {
+        let frame = self.frame(gpu, camera, lighting);
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &frame, &[]);
         pass.set_bind_group(self.shadow_group, shadows, &[]);

@@ -31,7 +31,8 @@ pub struct GpuRequest {
     pub limits: Option<wgpu::Limits>,
 }
 
-const TIMESTAMPS: wgpu::Features =
+/// Are the features with which timestamps can be written between passes.
+pub const TIMESTAMPS: wgpu::Features =
     wgpu::Features::TIMESTAMP_QUERY.union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS);
 
 impl Default for GpuRequest {
@@ -121,13 +122,22 @@ impl Gpu {
         });
         let (device, queue) = pollster::block_on(device)
             .map_err(|error| format!("no device of {}: {error}", adapter.get_info().name))?;
-        Ok(Self {
+        Ok(Self::from_device(adapter.get_info(), device, queue))
+    }
+
+    /// Makes one of a device that exists already: that of a window, for example.
+    pub fn from_device(
+        adapter: wgpu::AdapterInfo,
+        device: wgpu::Device,
+        queue: wgpu::Queue,
+    ) -> Self {
+        Self {
+            has_timestamps: device.features().contains(TIMESTAMPS),
             device,
             queue,
-            adapter: adapter.get_info(),
-            has_timestamps: required_features.contains(TIMESTAMPS),
+            adapter,
             submitting: Mutex::new(()),
-        })
+        }
     }
 
     /// Returns "name (kind, driver) over backend".

@@ -22,9 +22,33 @@ struct Placed<'a> {
 
 /// Loads `path` for an image of `size` pixels, seen by the file's `camera` (counted from 0).
 pub fn load(path: &Path, size: [u32; 2], camera: usize) -> Result<Scene, String> {
-    let failed = |error: gltf::Error| format!("cannot read {}: {error}", path.display());
-    let gltf::Gltf { document, blob } = gltf::Gltf::open(path).map_err(failed)?;
-    let folder = path.parent();
+    let name = path.display().to_string();
+    let file = gltf::Gltf::open(path).map_err(|error| format!("cannot read {name}: {error}"))?;
+    build(file, path.parent(), &name, size, camera)
+}
+
+/// Loads the bytes of a file that has everything in itself, as a .glb file has; `name` is that of
+/// messages.
+pub fn load_bytes(
+    bytes: &[u8],
+    name: &str,
+    size: [u32; 2],
+    camera: usize,
+) -> Result<Scene, String> {
+    let file = gltf::Gltf::from_slice(bytes);
+    let file = file.map_err(|error| format!("cannot read {name}: {error}"))?;
+    build(file, None, name, size, camera)
+}
+
+fn build(
+    file: gltf::Gltf,
+    folder: Option<&Path>,
+    name: &str,
+    size: [u32; 2],
+    camera: usize,
+) -> Result<Scene, String> {
+    let failed = |error: gltf::Error| format!("cannot read {name}: {error}");
+    let gltf::Gltf { document, blob } = file;
     let buffers = gltf::import_buffers(&document, folder, blob).map_err(failed)?;
     let images = images::load(&document, folder, &buffers).map_err(failed)?;
     let placed = placed_nodes(&document)?;
@@ -35,10 +59,7 @@ pub fn load(path: &Path, size: [u32; 2], camera: usize) -> Result<Scene, String>
         .iter()
         .fold(DBounds::EMPTY, |all, w| all.union(&w.bounds));
     if !bounds.is_finite() {
-        return Err(format!(
-            "{} has no triangles at finite places",
-            path.display()
-        ));
+        return Err(format!("{name} has no triangles at finite places"));
     }
 
     let aspect = size[0] as f32 / size[1] as f32;

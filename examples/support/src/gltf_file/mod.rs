@@ -12,4 +12,4 @@ mod load;
 mod primitive;
 pub mod scene;
 
-pub use load::load;
+pub use load::{load, load_bytes};

@@ -25,7 +25,11 @@ const HALVINGS: u32 = 4;
 impl Rings {
     /// Returns radii from a fraction of the finest texel in use to some texels of the coarsest.
     pub fn of_scene(scene: &Scene, rays: u32) -> Self {
-        let diameter = scene.diameter();
+        Self::of_diameter(scene.diameter(), rays)
+    }
+
+    /// Returns the same for a scene of this size in world units.
+    pub fn of_diameter(diameter: f64, rays: u32) -> Self {
         Self {
             least: diameter / 40_000.0,
             greatest: diameter / 40.0,

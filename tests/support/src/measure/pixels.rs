@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::edge;
 use super::parallel;
-use crate::camera;
+use crate::camera::{self, PixelRay};
 use crate::scene::Scene;
 use crate::truth::World;
 
@@ -47,20 +47,32 @@ pub fn visible(scene: &Scene, world: &World, effort: &Effort) -> Vec<Pixel> {
     let rings = edge::Rings::of_scene(scene, effort.ring_rays);
     let label = format!("truth of {}", scene.name);
     let pixels = parallel::map(&label, &rays, |&(index, ray)| {
-        let hit = world.first_hit(ray.start, ray.direction, ray.reach)?;
-        let position = ray.start + ray.direction * hit.distance;
-        let (toward_light, _) = world.light().toward_light_from(position);
-        if hit.normal.dot(toward_light) <= 0.0 || !world.light().reaches(position) {
-            return None;
-        }
-        Some(Pixel {
-            index,
-            position,
-            normal: hit.normal,
-            visibility: world.visibility(position, hit.normal, effort.disc_side),
-            occluder_world: world.occluder(position, hit.normal),
-            edge_world: edge::distance(world, position, hit.normal, &rings),
-        })
+        pixel(world, index, &ray, effort.disc_side, &rings)
     });
     pixels.into_iter().flatten().collect()
+}
+
+/// Returns what a ray through the image meets, if that counts. `disc_side` and the rays of `rings`
+/// are those of [`Effort`].
+pub fn pixel(
+    world: &World,
+    index: u32,
+    ray: &PixelRay,
+    disc_side: u32,
+    rings: &edge::Rings,
+) -> Option<Pixel> {
+    let hit = world.first_hit(ray.start, ray.direction, ray.reach)?;
+    let position = ray.start + ray.direction * hit.distance;
+    let (toward_light, _) = world.light().toward_light_from(position);
+    if hit.normal.dot(toward_light) <= 0.0 || !world.light().reaches(position) {
+        return None;
+    }
+    Some(Pixel {
+        index,
+        position,
+        normal: hit.normal,
+        visibility: world.visibility(position, hit.normal, disc_side),
+        occluder_world: world.occluder(position, hit.normal),
+        edge_world: edge::distance(world, position, hit.normal, rings),
+    })
 }

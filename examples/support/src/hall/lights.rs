@@ -10,7 +10,7 @@ pub const LAMPS: usize = 32;
 /// Points toward the sun, through the skylight.
 pub const TOWARD_SUN: Vec3 = Vec3::new(0.28, 1.0, 0.22);
 
-/// Mirrors `Light` in `hall.wgsl`.
+/// Mirrors `Light` in `lights.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Default, Pod, Zeroable)]
 pub struct LightUniform {
@@ -51,11 +51,11 @@ pub struct Lights {
 }
 
 impl Lights {
-    /// Returns the lights in frame `frame`.
-    pub fn at(frame: u32) -> Self {
+    /// Returns the lights at `time`, in steps of a fifth of a second or so.
+    pub fn at(time: f32) -> Self {
         Self {
-            spots: std::array::from_fn(|index| spot(index, frame as f32)),
-            lamps: std::array::from_fn(|index| lamp(index, frame as f32)),
+            spots: std::array::from_fn(|index| spot(index, time)),
+            lamps: std::array::from_fn(|index| lamp(index, time)),
         }
     }
 

@@ -30,8 +30,7 @@ fn unshadowed(light: Light, surface: Surface) -> vec3<f32> {
     return light.color * (reached * reached * facing * cone);
 }
 
-@fragment
-fn fragment(surface: Surface) -> @location(0) vec4<f32> {
+fn lit_hall(surface: Surface) -> vec3<f32> {
     var color = shade(surface, shadow_sun(surface.position, surface.normal));
     // A light's number here is its slot in the pool. Where a light does not reach the surface, its
     // shadow is not sampled.
@@ -47,5 +46,10 @@ fn fragment(surface: Surface) -> @location(0) vec4<f32> {
             color += surface.albedo * light * shadow_lamps(i, surface.position, surface.normal);
         }
     }
-    return vec4<f32>(color, 1.0);
+    return color;
+}
+
+@fragment
+fn fragment(surface: Surface) -> @location(0) vec4<f32> {
+    return vec4<f32>(lit_hall(surface), 1.0);
 }

@@ -1,8 +1,9 @@
 //! Generates what stands on one block: houses around a courtyard, or a tower on its square.
 
-use example_support::mesh::Instance;
 use glam::{Mat4, Quat, Vec2, Vec3};
 use shadow_support::random::Random;
+
+use crate::mesh::Instance;
 
 /// Is the side of a block between its streets.
 pub const BLOCK_SIDE: f32 = 56.0;
