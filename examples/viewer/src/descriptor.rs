@@ -19,6 +19,7 @@ impl SideSettings {
             label: None,
             map_size: self.map_size,
             cascades: self.cascades,
+            layout: self.layout,
             split: self.split,
             filter: with_light_size(self.filter, sun_radians),
             bias: self.bias,
@@ -62,6 +63,7 @@ impl SideSettings {
         let mut members = Members::default();
         members.add("map_size", own.map_size, default.map_size, "");
         members.add("cascades", own.cascades, default.cascades, "");
+        members.add("layout", own.layout, default.layout, "CascadeLayout::");
         members.add("split", own.split, default.split, "CascadeSplit::");
         members.add("filter", own.filter, default.filter, "Filter::");
         members.add("bias", own.bias, default.bias, "Bias::");
@@ -138,7 +140,7 @@ impl Members {
 
 #[cfg(test)]
 mod tests {
-    use wgpu_shadows::{Bias, CascadeSplit, DepthFormat, Stability};
+    use wgpu_shadows::{Bias, CascadeLayout, CascadeSplit, DepthFormat, Stability};
 
     use super::*;
 
@@ -174,6 +176,7 @@ mod tests {
         let side = SideSettings {
             map_size: 512,
             cascades: 3,
+            layout: CascadeLayout::Automatic,
             split: CascadeSplit::Practical { lambda: 0.75 },
             filter: Filter::PcssRotated { light_size: 9.0 },
             bias: Bias::Manual {
@@ -192,6 +195,7 @@ mod tests {
             DirectionalShadowDescriptor {
                 map_size: 512,
                 cascades: 3,
+                layout: CascadeLayout::Automatic,
                 split: CascadeSplit::Practical { lambda: 0.75 },
                 filter: Filter::PcssRotated { light_size: 0.5 },
                 bias: Bias::Manual {

@@ -8,7 +8,7 @@ use glam::Vec3;
 use shadow_support::gpu::Gpu;
 use shadow_support::measure::error::Errors;
 use wgpu_shadows::report::{ShadowReport, ViewStatus};
-use wgpu_shadows::{DirectionalLight, ShadowMaps};
+use wgpu_shadows::{CascadeLayout, DirectionalLight, ShadowMaps};
 
 use crate::device_clock::DeviceClock;
 use crate::picture::{Contents, Picture};
@@ -355,6 +355,7 @@ impl Engine {
         let filter = filter_name(own.filter);
         let maps = match own.cascades {
             1 => format!("{}²", own.map_size),
+            _ if own.layout == CascadeLayout::Automatic => format!("{}², divided", own.map_size),
             count => format!("{count} × {}²", own.map_size),
         };
         let covers = if own.covers == Covers::Scene {
@@ -368,10 +369,10 @@ impl Engine {
 }
 
 fn drawn_texels(maps: &ShadowMaps) -> u64 {
-    let side = u64::from(maps.texture().width());
     let views = maps.report().views.iter();
     let drawn = views.filter(|view| view.status == ViewStatus::Drawn);
-    drawn.count() as u64 * side * side
+    let texels = drawn.map(|view| u64::from(view.texels.size.x) * u64::from(view.texels.size.y));
+    texels.sum()
 }
 
 /// Returns the cameras of both sides, which differ in the distance where shadows end.

@@ -1,7 +1,7 @@
 //! Holds everything that a person sets: what the address of the page keeps.
 
 use glam::Vec3;
-use wgpu_shadows::{Bias, CascadeSplit, DepthFormat, Filter, Stability};
+use wgpu_shadows::{Bias, CascadeLayout, CascadeSplit, DepthFormat, Filter, Stability};
 
 use crate::viewpoint::Viewpoint;
 
@@ -59,7 +59,9 @@ pub struct SideSettings {
     /// Is the distance from the camera at which shadows end, in world units; 0 for no end.
     pub max_distance: f32,
     pub map_size: u32,
+    /// Is the number of cascades, or the largest one where the layout is found.
     pub cascades: u32,
+    pub layout: CascadeLayout,
     pub split: CascadeSplit<'static>,
     /// Is the filter; the light size of a filter with penumbrae is that of the sun, whatever is
     /// written here.
@@ -91,6 +93,7 @@ impl SideSettings {
             max_distance: 0.0,
             map_size: 2048,
             cascades,
+            layout: CascadeLayout::Fixed,
             split: CascadeSplit::Logarithmic,
             filter: Filter::Tent3 { sharpness: 3.0 },
             bias: Bias::Auto,

@@ -9,8 +9,8 @@ use glam::DVec3;
 use shadow_support::gpu::Gpu;
 use web_time::Instant;
 use wgpu_shadows::{
-    Coverage, DirectionalLight, DirectionalShadow, ShadowBindings, ShadowBindingsDescriptor,
-    ShadowFrameDescriptor, ShadowMaps, ShadowScene,
+    Casters, Coverage, DirectionalLight, DirectionalShadow, ShadowBindings,
+    ShadowBindingsDescriptor, ShadowFrameDescriptor, ShadowMaps, ShadowScene,
 };
 
 use crate::lamps::Lamps;
@@ -141,7 +141,7 @@ impl Side {
                     Covers::Camera => Coverage::Cameras(&cameras),
                     Covers::Scene => Coverage::Bounds(stage.bounds()),
                 },
-                casters: &casters,
+                casters: Casters::List(&casters),
                 receivers: stage.receivers(),
             })
             .map_err(|error| error.to_string())?;
