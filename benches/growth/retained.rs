@@ -58,7 +58,11 @@ pub struct Mover {
 impl Mover {
     fn step(&mut self, frame: u32) {
         // Each goes to and fro, so that the crowd stays a crowd.
-        let way = if frame / 40 % 2 == 0 { 1.0 } else { -1.0 };
+        let way = if (frame / 40).is_multiple_of(2) {
+            1.0
+        } else {
+            -1.0
+        };
         self.bounds.min += self.velocity * way;
         self.bounds.max += self.velocity * way;
         self.version += 1;

@@ -142,7 +142,7 @@ impl<'a> World<'a> {
         if chance < 0.05 && self.ids.len() > 2 {
             let index = self.random.index(self.ids.len());
             let id = self.ids.swap_remove(index);
-            self.set.remove(id).ok().expect("a known caster");
+            self.set.remove(id).expect("a known caster");
             self.gone.push(id);
         } else if chance < 0.1 && self.ids.len() < 60 {
             let thing = self.random_thing();
@@ -172,7 +172,7 @@ impl<'a> World<'a> {
 
 /// Is a light of any kind.
 enum Light {
-    Sun(DirectionalShadow),
+    Sun(Box<DirectionalShadow>),
     Spot(SpotShadow),
     Lamp(OmniShadow),
     Pool(OmniShadowPool, Vec<PoolLight<OmniLight>>),
@@ -189,7 +189,9 @@ impl Light {
                 stability,
                 ..Default::default()
             };
-            Self::Sun(DirectionalShadow::new(device, &descriptor).expect("a valid sun"))
+            Self::Sun(Box::new(
+                DirectionalShadow::new(device, &descriptor).expect("a valid sun"),
+            ))
         };
         let spot = SpotShadowDescriptor {
             map_size: 64,

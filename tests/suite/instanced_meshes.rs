@@ -363,7 +363,7 @@ fn copies_in_a_set_are_those_in_a_list() {
         change(&mut listed);
         set.update(id, change).expect("a known caster");
         if frame % 17 == 0 {
-            let taken = set.remove(id).ok().expect("a known caster");
+            let taken = set.remove(id).expect("a known caster");
             id = set.insert(taken);
         }
         let list: [&dyn ShadowCaster; 2] = [&ground, &listed];
