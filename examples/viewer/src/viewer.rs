@@ -165,6 +165,7 @@ impl Viewer {
     }
 
     /// Returns whether rays are being cast, or their result is on its way.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn is_casting(&self) -> bool {
         self.engine.truth_progress().is_some() && self.engine.errors(0).is_none()
     }

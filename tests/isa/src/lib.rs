@@ -8,12 +8,16 @@
 //!
 //! The SPIR-V is what wgpu gives to this driver: the same writer with the same options.
 
+#[cfg(not(target_arch = "wasm32"))]
 mod compiler;
 mod driver;
+mod figures;
 mod table;
 
-pub use compiler::{Compiler, Figures};
+#[cfg(not(target_arch = "wasm32"))]
+pub use compiler::Compiler;
 pub use driver::Driver;
+pub use figures::Figures;
 pub use table::{Row, Table};
 
 /// States why a shader could not be compiled.
@@ -29,9 +33,11 @@ pub enum IsaError {
         folder: String,
     },
     /// Vulkan could not be loaded.
+    #[cfg(not(target_arch = "wasm32"))]
     #[error("Vulkan: {0}")]
     Loading(#[from] ash::LoadingError),
     /// Vulkan returned an error.
+    #[cfg(not(target_arch = "wasm32"))]
     #[error("Vulkan: {0}")]
     Vulkan(#[from] ash::vk::Result),
     /// The driver offers no device, because it does not know the chip.
