@@ -7,6 +7,8 @@ const FLAGS = [
   '--enable-unsafe-webgpu',
   '--use-webgpu-adapter=swiftshader',
   '--enable-features=Vulkan',
+  // Without this one, what WebGPU draws to a canvas is not shown.
+  '--use-vulkan=swiftshader',
   '--use-angle=swiftshader',
   '--enable-unsafe-swiftshader',
   // Chromium refuses its sandbox to root, which containers run as.

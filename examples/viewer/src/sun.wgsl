@@ -21,13 +21,15 @@ fn in_the_haze(color: vec3<f32>, position: vec3<f32>) -> vec3<f32> {
 
 @fragment
 fn fragment_picture(surface: Surface) -> @location(0) vec4<f32> {
+    // Derivatives are taken by all pixels alike, hence before the branch.
+    let color = lit(surface, facing_normal(surface));
     if surface.checker < 0.0 {
         // What shines by itself has its own colour; a sky is paler toward the horizon.
         let way = normalize(surface.position - frame.eye);
         let pale = select(0.0, exp(-6.0 * max(way.y, 0.0)), HAZE_DENSITY > 0.0);
         return encoded(mix(surface.albedo, HAZE, pale));
     }
-    return encoded(in_the_haze(lit(surface, facing_normal(surface)), surface.position));
+    return encoded(in_the_haze(color, surface.position));
 }
 
 // Writes the visibility of the sun as grey, darker by a little where the surface faces away.
