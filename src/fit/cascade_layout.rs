@@ -26,6 +26,11 @@ pub enum CascadeLayout {
     /// another halves the error, as after a cut of the camera. All cascades are drawn when it
     /// changes. The same frames always lead to the same layouts.
     ///
+    /// All that is predicted follows from bounds. Casters whose bounds hold much more than their
+    /// surfaces, such as a town in one mesh, are judged too simply: there, a fixed layout of four
+    /// cascades may have a lower error with as many texels.
+    /// [`predicted_error`](crate::report::ShadowReport::predicted_error) tells what was expected.
+    ///
     /// Without a camera, one cascade has all texels. A map of fewer than some 200 texels a side is
     /// not divided, since the borders of its parts would take too many of them.
     Automatic,
