@@ -155,6 +155,7 @@ pub fn fullscreen_passes() -> Result<Vec<Composition>, Box<dyn Error>> {
         ("debug_view", "shadow_debug_cross"),
         ("cascade_tint", "shadow_tint_fragment"),
         ("gather_probe", "shadow_probe_fragment"),
+        ("rect_copy", "shadow_copy_fragment"),
     ];
     let pass = |(module, fragment)| {
         Ok(Composition {
