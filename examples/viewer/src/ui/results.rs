@@ -98,8 +98,8 @@ fn views(ui: &mut Ui, name: &str, report: &ShadowReport, height: u32) {
             ui.small(title);
         }
         ui.end_row();
-        for view in &report.views {
-            let status = format!("{} {:?}", view.layer, view.status).to_lowercase();
+        for (index, view) in report.views.iter().enumerate() {
+            let status = format!("{index} {:?}", view.status).to_lowercase();
             ui.small(status);
             ui.small(view.casters.to_string());
             ui.small(view.culled.to_string());
@@ -110,9 +110,12 @@ fn views(ui: &mut Ui, name: &str, report: &ShadowReport, height: u32) {
             ui.end_row();
         }
     });
-    for view in &report.views {
+    for (index, view) in report.views.iter().enumerate() {
         let Some(slice) = &view.slice else { continue };
-        ui.small(format!("{}: {}", view.layer, slice_text(slice, height)));
+        ui.small(format!("{index}: {}", slice_text(slice, height)));
+    }
+    if let Some(error) = report.predicted_error {
+        ui.small(format!("predicted error of the layout: {error:.4}"));
     }
 }
 
