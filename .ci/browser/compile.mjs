@@ -37,13 +37,15 @@ async function compileWgsl({ code, vertex, fragment }) {
     offset: 16 * shaderLocation,
     format: 'float32x4',
   }));
-  const color = { module, entryPoint: fragment, targets: [{ format: 'rgba8unorm' }] };
+  const writesDepth = !fragment || code.includes('@builtin(frag_depth)');
+  const targets = writesDepth ? [] : [{ format: 'rgba8unorm' }];
   const depth = { format: 'depth32float', depthWriteEnabled: true, depthCompare: 'greater' };
   try {
     await device.createRenderPipelineAsync({
       layout: 'auto',
       vertex: { module, entryPoint: vertex, buffers: [{ arrayStride: 80, attributes }] },
-      ...(fragment ? { fragment: color } : { depthStencil: depth }),
+      ...(fragment && { fragment: { module, entryPoint: fragment, targets } }),
+      ...(writesDepth && { depthStencil: depth }),
     });
   } catch (refused) {
     told.push(`pipeline: ${refused.message}`);
