@@ -104,16 +104,17 @@
 //! # A list of casters or a set
 //!
 //! [`ShadowFrameDescriptor::casters`] is a [`Casters`]. With [`Casters::List`] the engine collects
-//! its casters for each frame; all of them are asked, and each light looks at all of them. That is
-//! the simplest way, and the cheapest for scenes of up to some hundred casters.
+//! its casters for each frame; the methods of all of them are called, and each light tests all of
+//! their bounds. That is the simplest way, and the cheapest for scenes of up to some hundred
+//! casters.
 //!
 //! With [`Casters::Set`] the engine keeps its casters in a [`CasterSet`], inserts and removes them,
 //! and says by [`CasterSet::update`] which of them changed. A tree finds those that a light needs,
 //! so that a frame costs what changed and what is seen: thousands of casters, of which most stand
-//! still or are out of sight, belong in a set. What is forgotten to be told is the price: a caster
-//! that moves without an `update` leaves its shadow behind, where a list would have asked it. Since
-//! bounds are in render space, an engine whose `origin` follows the camera has to update all casters
-//! whenever the origin moves; it moves the origin rarely, or uses a list.
+//! still or are out of sight, belong in a set. The price is what can be forgotten: a caster that
+//! moves without an `update` leaves its shadow behind, where a list would have noticed. Since
+//! bounds are in render space, an engine whose `origin` follows the camera has to update all
+//! casters whenever the origin moves; it moves the origin rarely, or uses a list.
 //!
 //! Both give the same maps, bit for bit. The order of casters means nothing, neither that of a list
 //! nor that in which a set was filled: a view is kept while the revisions of its casters are the

@@ -25,13 +25,13 @@ struct ShadowMapping {
     // moved for the rounding of render coordinates; for a local one the rounding error of a
     // comparison in relation to the depth.
     rounding: f32,
-    // Is the middle of the part of the map in which positions have shadows, in texel coordinates. A lookup needs no
-    // more than the members up to here once it has found its view.
+    // Is the middle of the part of the map in which positions have shadows, in texel coordinates. A
+    // lookup needs no more than the members up to here once it has found its view.
     middle: vec2<f32>,
     // Is 1e30 where nothing casts into the view, which then covers no position.
     texel_offset: vec2<f32>,
-    // Is the distance from the middle, in texels along x and y, within which a lookup stays inside the view's part of
-    // the map, with kernel and bias included, and positions have shadows.
+    // Is the distance from the middle, in texels along x and y, within which a lookup stays inside
+    // the view's part of the map, with kernel and bias included, and positions have shadows.
     inner: vec2<f32>,
 }
 

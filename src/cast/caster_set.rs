@@ -4,14 +4,14 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::ShadowError;
 use crate::cast::ShadowCaster;
-use crate::cast::caster_answers::{CasterAnswer, CasterAnswers};
+use crate::cast::caster_records::{CasterRecord, CasterRecords};
 
 /// Selects the casters of a frame.
 #[derive(Clone, Copy)]
 #[non_exhaustive]
 pub enum Casters<'c> {
-    /// Takes a list. All of its casters are asked in every frame, and each light looks at all of
-    /// them. It suits scenes of up to some hundred casters, and tools.
+    /// Takes a list. The methods of all of its casters are called in every frame, and each light
+    /// tests all of their bounds. It suits scenes of up to some hundred casters, and tools.
     List(&'c [&'c dyn ShadowCaster]),
     /// Takes a [`CasterSet`]. A frame costs what has changed in the set and what is seen of it.
     Set(&'c dyn RetainedCasters),
@@ -46,7 +46,7 @@ pub trait RetainedCasters: sealed::Retained {}
 
 mod sealed {
     use crate::cast::ShadowCaster;
-    use crate::cast::caster_answers::{CasterAnswers, Content};
+    use crate::cast::caster_records::{CasterRecords, CastersVersion};
 
     /// Is what a frame needs of a set.
     #[expect(
@@ -54,9 +54,9 @@ mod sealed {
         reason = "the trait cannot be named outside the crate"
     )]
     pub trait Retained {
-        fn answers(&self) -> &CasterAnswers;
+        fn records(&self) -> &CasterRecords;
         /// Returns the number of the state of a frame that begins.
-        fn content_of_frame(&self) -> Content;
+        fn version_of_frame(&self) -> CastersVersion;
         fn caster(&self, index: u32) -> &dyn ShadowCaster;
         /// Returns the number of casters, where instances count one by one.
         fn count(&self) -> usize;
@@ -111,7 +111,7 @@ pub struct CasterSet<C> {
     /// Holds the indices of the slots that are empty.
     free: Vec<u32>,
     /// Has one entry for each caster that draws itself, and for each instance of all others.
-    answers: CasterAnswers,
+    records: CasterRecords,
     /// Holds the indices of the entries that are not in use.
     free_entries: Vec<u32>,
     /// Distinguishes the frames of a set in which some caster may always look different.
@@ -125,7 +125,7 @@ struct Member<C> {
     entries: Entries,
 }
 
-/// Holds the indices of the answers of a caster. Most casters have one, which takes no memory of
+/// Holds the indices of the records of a caster. Most casters have one, which takes no memory of
 /// its own.
 #[derive(Debug, Default)]
 struct Entries {
@@ -164,7 +164,7 @@ impl<C> Default for CasterSet<C> {
         Self {
             slots: Vec::new(),
             free: Vec::new(),
-            answers: CasterAnswers::new(true),
+            records: CasterRecords::new(true),
             free_entries: Vec::new(),
             frames: AtomicU64::new(0),
         }
@@ -184,18 +184,18 @@ impl<C: ShadowCaster> CasterSet<C> {
     /// [`insert_all`](Self::insert_all).
     pub fn insert(&mut self, caster: C) -> CasterId {
         let id = self.place(caster);
-        self.ask(id.index);
+        self.read(id.index);
         id
     }
 
     /// Adds casters and returns their ids in the same order. All casters of the set are then sorted
     /// anew, so that a level is loaded in one call rather than in many.
     pub fn insert_all(&mut self, casters: impl IntoIterator<Item = C>) -> Vec<CasterId> {
-        let tree = self.answers.tree.take();
+        let tree = self.records.tree.take();
         let add = |caster| self.insert(caster);
         let ids = casters.into_iter().map(add).collect();
-        self.answers.tree = tree;
-        self.answers.rebuild_tree();
+        self.records.tree = tree;
+        self.records.rebuild_tree();
         ids
     }
 
@@ -215,7 +215,7 @@ impl<C: ShadowCaster> CasterSet<C> {
             return Err(unknown(id));
         };
         let result = change(&mut member.caster);
-        self.ask(id.index);
+        self.read(id.index);
         Ok(result)
     }
 
@@ -230,7 +230,7 @@ impl<C: ShadowCaster> CasterSet<C> {
             return Err(unknown(id));
         };
         while let Some(entry) = member.entries.pop() {
-            self.answers.clear(entry);
+            self.records.clear(entry);
             self.free_entries.push(entry);
         }
         self.free.push(id.index);
@@ -263,29 +263,29 @@ impl<C: ShadowCaster> CasterSet<C> {
     }
 
     /// Calls the methods of the caster in a slot and keeps what they return.
-    fn ask(&mut self, index: u32) {
+    fn read(&mut self, index: u32) {
         let Some(Member {
             caster, entries, ..
         }) = &mut self.slots[index as usize]
         else {
             return;
         };
-        let (answers, free) = (&mut self.answers, &mut self.free_entries);
+        let (records, free) = (&mut self.records, &mut self.free_entries);
         let mut count = 0;
-        CasterAnswer::each(caster, index, |answer| {
+        CasterRecord::each(caster, index, |record| {
             let entry = entries.get(count).unwrap_or_else(|| {
-                let entry = free.pop().unwrap_or(answers.len() as u32);
+                let entry = free.pop().unwrap_or(records.len() as u32);
                 entries.push(entry);
                 entry
             });
-            answers.put(entry, &answer);
+            records.put(entry, &record);
             count += 1;
         });
         while entries.len() > count {
             let Some(entry) = entries.pop() else {
                 break;
             };
-            answers.clear(entry);
+            records.clear(entry);
             free.push(entry);
         }
     }
@@ -326,16 +326,16 @@ impl<C: ShadowCaster> RetainedCasters for CasterSet<C> {}
     reason = "the trait cannot be named outside the crate"
 )]
 impl<C: ShadowCaster> sealed::Retained for CasterSet<C> {
-    fn answers(&self) -> &CasterAnswers {
-        &self.answers
+    fn records(&self) -> &CasterRecords {
+        &self.records
     }
 
-    fn content_of_frame(&self) -> super::caster_answers::Content {
-        let content = self.answers.content();
-        if self.answers.always_changing == 0 {
-            return content;
+    fn version_of_frame(&self) -> super::caster_records::CastersVersion {
+        let version = self.records.version();
+        if self.records.always_changing == 0 {
+            return version;
         }
-        content.in_frame(self.frames.fetch_add(1, Ordering::Relaxed))
+        version.in_frame(self.frames.fetch_add(1, Ordering::Relaxed))
     }
 
     fn caster(&self, index: u32) -> &dyn ShadowCaster {
@@ -344,6 +344,6 @@ impl<C: ShadowCaster> sealed::Retained for CasterSet<C> {
     }
 
     fn count(&self) -> usize {
-        self.answers.len() - self.free_entries.len()
+        self.records.len() - self.free_entries.len()
     }
 }

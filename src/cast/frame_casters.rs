@@ -1,7 +1,7 @@
 //! Holds the casters of a frame with the values that their methods returned.
 
 use crate::Aabb;
-use crate::cast::caster_answers::{CasterAnswer, CasterAnswers, CasterFacts, Content};
+use crate::cast::caster_records::{CasterFacts, CasterRecord, CasterRecords, CastersVersion};
 use crate::cast::instances::Instance;
 use crate::cast::mesh_geometry::MeshGeometry;
 use crate::cast::{CasterInstances, Casters, ShadowCaster};
@@ -55,8 +55,8 @@ pub(crate) fn sound_bounds(
 #[derive(Clone, Copy)]
 pub(crate) struct FrameCasters<'a> {
     casters: Casters<'a>,
-    answers: &'a CasterAnswers,
-    content: Content,
+    records: &'a CasterRecords,
+    version: CastersVersion,
     /// Is the path of the list in the caller's frame, for errors.
     pub field: &'static str,
     /// Holds the bounds of the frame that were left out.
@@ -64,20 +64,20 @@ pub(crate) struct FrameCasters<'a> {
 }
 
 impl<'a> FrameCasters<'a> {
-    /// Asks the casters of a list, or takes the answers of a set. `field` is the path in the
-    /// caller's frame. Bounds that are neither finite nor empty are added to `broken`.
-    pub fn ask(
+    /// Calls the methods of the casters of a list, or takes the records of a set. `field` is the
+    /// path in the caller's frame. Bounds that are neither finite nor empty are added to `broken`.
+    pub fn new(
         field: &'static str,
         casters: Casters<'a>,
-        listed: &'a mut CasterAnswers,
+        listed: &'a mut CasterRecords,
         broken: &'a mut Vec<BrokenBounds>,
     ) -> Self {
-        let (answers, content) = match casters {
+        let (records, version) = match casters {
             Casters::List(list) => {
                 let mut count = 0;
                 for (listed_index, caster) in (0u32..).zip(list) {
-                    CasterAnswer::each(*caster, listed_index, |answer| {
-                        listed.put(count, &answer);
+                    CasterRecord::each(*caster, listed_index, |record| {
+                        listed.put(count, &record);
                         count += 1;
                     });
                 }
@@ -85,14 +85,14 @@ impl<'a> FrameCasters<'a> {
                 if listed.always_changing > 0 {
                     listed.count_frame();
                 }
-                (&*listed, listed.content())
+                (&*listed, listed.version())
             }
-            Casters::Set(set) => (set.answers(), set.content_of_frame()),
+            Casters::Set(set) => (set.records(), set.version_of_frame()),
         };
-        broken.extend(answers.broken.iter().map(|(&index, &bounds)| {
+        broken.extend(records.broken.iter().map(|(&index, &bounds)| {
             let CasterFacts {
                 listed, instance, ..
-            } = answers.facts[index as usize];
+            } = records.facts[index as usize];
             BrokenBounds {
                 field,
                 index: listed as usize,
@@ -102,8 +102,8 @@ impl<'a> FrameCasters<'a> {
         }));
         Self {
             casters,
-            answers,
-            content,
+            records,
+            version,
             field,
             broken,
         }
@@ -119,7 +119,7 @@ impl<'a> FrameCasters<'a> {
     }
 
     /// Returns the instance at `index` with its geometry. Returns `None` for a caster that draws
-    /// itself, and for one that no longer has the instance that it had when it was asked.
+    /// itself, and for one that no longer has the instance that it had when the frame began.
     pub fn instance(&self, index: u32) -> Option<(&'a MeshGeometry, &'a Instance)> {
         let instance = self.facts(index).instance?;
         let CasterInstances {
@@ -137,13 +137,13 @@ impl<'a> FrameCasters<'a> {
 
     /// Returns what the methods of the caster at `index` returned.
     pub fn facts(&self, index: u32) -> &'a CasterFacts {
-        &self.answers.facts[index as usize]
+        &self.records.facts[index as usize]
     }
 
     /// Returns the number of casters, where instances count one by one.
     pub fn len(&self) -> usize {
         match self.casters {
-            Casters::List(_) => self.answers.facts.len(),
+            Casters::List(_) => self.records.facts.len(),
             Casters::Set(set) => set.count(),
         }
     }
@@ -151,26 +151,26 @@ impl<'a> FrameCasters<'a> {
     /// Returns the bounds of those that cast.
     pub fn casting(&self) -> Boxes<'a> {
         Boxes {
-            bounds: &self.answers.casts,
-            tree: self.answers.tree.as_ref(),
+            bounds: &self.records.casts,
+            tree: self.records.tree.as_ref(),
         }
     }
 
     /// Returns the bounds of those that receive.
     pub fn receiving(&self) -> Boxes<'a> {
         Boxes {
-            bounds: &self.answers.receives,
-            tree: self.answers.tree.as_ref(),
+            bounds: &self.records.receives,
+            tree: self.records.tree.as_ref(),
         }
     }
 
     /// Returns the shapes by index.
     pub fn shapes(&self) -> &'a [CasterShape] {
-        &self.answers.shapes
+        &self.records.shapes
     }
 
     /// Returns the number of the state that all of this is in.
-    pub fn content(&self) -> Content {
-        self.content
+    pub fn version(&self) -> CastersVersion {
+        self.version
     }
 }

@@ -5,7 +5,7 @@
 //! caster.rs              ShadowCaster: what the engine implements; revision.rs: its Revision
 //! instances.rs           CasterInstances: copies of a mesh, which batches are made of
 //! caster_set.rs          CasterSet: casters that stay from frame to frame
-//! caster_answers.rs      what the methods of casters returned
+//! caster_records.rs      what the methods of casters returned
 //! frame_casters.rs       the casters of a frame
 //! pipeline_descriptor.rs how a kind of caster is laid out and shaded
 //! pipeline.rs            CasterPipeline: the pipelines made of it
@@ -27,8 +27,8 @@
 //! ```
 
 mod caster;
-mod caster_answers;
 mod caster_limits;
+mod caster_records;
 mod caster_set;
 mod closed;
 mod cube_pass;
@@ -57,8 +57,8 @@ mod shared_layer;
 mod view_uniform;
 
 pub use caster::ShadowCaster;
-pub(crate) use caster_answers::{CasterAnswers, Content};
 pub(crate) use caster_limits::caster_group;
+pub(crate) use caster_records::{CasterRecords, CastersVersion};
 pub use caster_set::{CasterId, CasterSet, Casters, RetainedCasters};
 pub use closed::is_closed_solid;
 pub use frame_casters::BrokenBounds;

@@ -27,9 +27,9 @@ enum Origin {
 
 impl Revision {
     /// Makes a revision from an `id`, which distinguishes this caster from all others of the light,
-    /// and a `version`, which counts its changes. Both may be any number. No ready-made mesh has the
-    /// revision of an engine's own caster, whatever the ids. Two casters that share an id and a version are taken for each other, and leave a stale
-    /// shadow where one replaces the other.
+    /// and a `version`, which counts its changes. Both may be any number. No ready-made mesh has
+    /// the revision of an engine's own caster, whatever the ids. Two casters that share an id and a
+    /// version are taken for each other, and leave a stale shadow where one replaces the other.
     pub const fn new(id: u64, version: u64) -> Self {
         Self {
             origin: Origin::Engine,

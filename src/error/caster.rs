@@ -6,7 +6,8 @@ use crate::error::{DeviceError, DeviceRefusal};
 
 /// Tells why [`CasterPipeline::new`](crate::CasterPipeline::new),
 /// [`MeshCaster::new`](crate::MeshCaster::new),
-/// [`InstancedMeshCaster::new`](crate::InstancedMeshCaster::new) or a later change of a mesh failed.
+/// [`InstancedMeshCaster::new`](crate::InstancedMeshCaster::new) or a later change of a mesh
+/// failed.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum CasterError {

@@ -2,7 +2,7 @@
 //!
 //! It is a binary tree of bounding boxes (Goldsmith and Salmon 1987) with the insertion and the
 //! rotations of Box2D's dynamic tree (Catto 2019, "Dynamic Bounding Volume Hierarchies"). Crates
-//! were judged against what a light asks of a tree, and each lacks something: `rstar` finds a
+//! were judged against what a light needs of a tree, and each lacks something: `rstar` finds a
 //! member again only by searching for its old box, so that a move costs two searches and two
 //! changes of the tree; `bvh` and `parry3d` bring `nalgebra` or a second version of `glam` into
 //! every engine's build, `bvh` moves a member by removing and inserting it, and both walk with
@@ -164,8 +164,9 @@ impl BoundsTree {
         }
     }
 
-    /// Calls `meet` with the index of every box that may be wanted. `enters` is asked of boxes that
-    /// hold others and must return true where it would for one of those; `state` is passed to both.
+    /// Visits the tree from its root: calls `meet` with the index of every box for which `enters`
+    /// returns true. `enters` is called for the boxes above it first and must return true for each
+    /// of these; `state` is passed to both.
     pub fn walk<S>(
         &self,
         state: &mut S,

@@ -7,15 +7,15 @@ use glam::{DVec3, UVec2};
 use crate::Aabb;
 use crate::fit::axes::LightBox;
 use crate::fit::caster_parts::CasterPart;
+use crate::fit::directional_casters::DirectionalCasters;
 use crate::fit::directional_input::{FitInput, FitLimits, Region};
 use crate::fit::extruded_rect::push_extruded_rect;
 use crate::fit::map_rect::{
-    BoundsDemand, HeldBounds, HeldDepth, HeldRect, LightSpaceBounds, MapRectRequest,
+    BoundsRequest, HeldBounds, HeldDepth, HeldRect, LightSpaceBounds, MapRectRequest,
 };
 use crate::fit::region::HalfSpaces;
 use crate::fit::spacing::Spacing;
 use crate::fit::stability::Stability;
-use crate::fit::sun_casters::SunCasters;
 use crate::fit::visible::{self, Seen};
 
 /// Is the largest distance in texels, from the highest receiver, to which casters whose bounds
@@ -35,7 +35,7 @@ pub(crate) struct Cascade<'a> {
     pub input: &'a FitInput<'a>,
     pub limits: &'a FitLimits,
     /// Holds the casters that count as a whole.
-    pub casters: SunCasters<'a>,
+    pub casters: DirectionalCasters<'a>,
     /// Holds the parts of divided casters, the highest first. Only these parts of a divided caster
     /// count.
     pub parts: &'a [CasterPart],
@@ -50,14 +50,14 @@ pub(crate) struct Cascade<'a> {
 impl Cascade<'_> {
     /// Returns the light-space bounds for receivers in `required`: the area, seen from the light,
     /// that both receivers and casters cover. Where rounding makes it doubtful whether a caster
-    /// reaches the receivers, it counts as reaching them. The second value is what was asked of the
-    /// bounds. Returns `None` where no caster does.
+    /// reaches the receivers, it counts as reaching them. The second value is what the bounds
+    /// were fitted to. Returns `None` where no caster does.
     pub fn fit(
         &self,
         required: &LightBox,
         spacing: Spacing,
         held: Option<&HeldBounds>,
-    ) -> Option<(HeldBounds, BoundsDemand)> {
+    ) -> Option<(HeldBounds, BoundsRequest)> {
         let limits = self.limits;
         let shadows = self.shadows(required, required, spacing)?;
         let received = if self.follows_casters() {
@@ -98,15 +98,15 @@ impl Cascade<'_> {
             rect,
             depth: depth(nearest),
         };
-        let demand = BoundsDemand {
-            request,
+        let request = BoundsRequest {
+            rect: request,
             far: received.min.z,
             highest,
             nearest,
             least_depth,
             reaching: reaching.depth,
         };
-        Some((bounds, demand))
+        Some((bounds, request))
     }
 
     /// Returns whether the bounds hold no more of the receivers than what casters reach.

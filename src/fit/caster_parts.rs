@@ -12,8 +12,8 @@ use glam::DVec3;
 use crate::Aabb;
 use crate::fit::axes::{LightBox, LightSpace};
 use crate::fit::caster_shape::CasterShape;
+use crate::fit::directional_casters::DirectionalCasters;
 use crate::fit::spacing::Spacing;
-use crate::fit::sun_casters::SunCasters;
 use crate::fit::view_rounding::position_error_world;
 use crate::fit::visible::SeenReceiver;
 
@@ -129,7 +129,7 @@ impl PartScratch {
     pub fn find(
         &mut self,
         shapes: &[CasterShape],
-        candidates: &SunCasters<'_>,
+        candidates: &DirectionalCasters<'_>,
         visible: &LightBox,
         seen: &[SeenReceiver],
     ) {
@@ -320,7 +320,7 @@ fn pair(caster: &Aabb, (min, max): (DVec3, DVec3), toward_light: DVec3) -> Optio
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::sun_casters::SunCaster;
+    use crate::fit::directional_casters::DirectionalCaster;
     use crate::fit::visible::SeenBounds;
     use crate::fit::{Boxes, LightAxes};
     use glam::Vec3;
@@ -342,7 +342,7 @@ mod tests {
             axes: LightAxes::new(direction, DVec3::Y),
             origin: DVec3::ZERO,
         };
-        let listed = (0..).zip(bounds).map(|(index, bounds)| SunCaster {
+        let listed = (0..).zip(bounds).map(|(index, bounds)| DirectionalCaster {
             index,
             light: space.bounds(bounds),
         });
@@ -351,7 +351,7 @@ mod tests {
         listed
             .iter()
             .for_each(|caster| visible.union(&caster.light));
-        let candidates = SunCasters {
+        let candidates = DirectionalCasters {
             space: &space,
             boxes: Boxes { bounds, tree: None },
             visible: &SeenBounds::NOTHING,

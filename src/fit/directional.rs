@@ -6,17 +6,17 @@ use crate::fit::boxes::Boxes;
 use crate::fit::cascade_bounds::Cascade;
 use crate::fit::cascade_layout::CascadeLayout;
 use crate::fit::caster_parts::PartScratch;
+use crate::fit::directional_casters::{DirectionalCaster, DirectionalCasters};
 use crate::fit::directional_input::{FitInput, FitLimits, Region};
 use crate::fit::extruded_rect::ExtrudedRect;
 use crate::fit::footprint::{FootprintScratch, SliceReport};
 use crate::fit::layout::HeldLayout;
 use crate::fit::layout_choice::{Layout, Prediction};
 use crate::fit::layout_samples::{SampleScratch, Sampled};
-use crate::fit::map_rect::{BoundsDemand, HeldBounds, HeldDepth, LightSpaceBounds};
+use crate::fit::map_rect::{BoundsRequest, HeldBounds, HeldDepth, LightSpaceBounds};
 use crate::fit::required::{camera_slice, checked_spacing, held_depths, required_box};
 use crate::fit::spacing::Spacing;
 use crate::fit::split::MAX_CASCADES;
-use crate::fit::sun_casters::{SunCaster, SunCasters};
 use crate::fit::visible::{SeenBounds, SeenLists};
 use crate::{Aabb, ShadowError};
 
@@ -32,8 +32,8 @@ pub(crate) struct DirectionalFit {
     /// Has one entry per cascade, `None` for a cascade in which nothing can cast a shadow.
     pub light_bounds: [Option<LightSpaceBounds>; MAX_CASCADES],
     held: [Option<HeldBounds>; MAX_CASCADES],
-    /// Holds what was asked of each of `light_bounds`.
-    demands: [Option<BoundsDemand>; MAX_CASCADES],
+    /// Holds what each of `light_bounds` was fitted to.
+    requests: [Option<BoundsRequest>; MAX_CASCADES],
     /// Bounds what was visible.
     visible: Option<SeenBounds>,
     /// Holds the axes of the light in the last frame.
@@ -52,7 +52,7 @@ pub(crate) struct FitScratch {
     /// Bounds what is visible in this frame.
     visible: SeenBounds,
     /// Holds the casters that can shadow something, where no tree finds them.
-    casters: Vec<SunCaster>,
+    casters: Vec<DirectionalCaster>,
     lists: SeenLists,
     parts: PartScratch,
     footprint: FootprintScratch,
@@ -94,7 +94,7 @@ impl DirectionalFit {
     ) -> Result<Self, ShadowError> {
         let visible = find_visible(input, &mut scratch.lists);
         scratch.visible = visible;
-        SunCasters::list(&input.space, input.casters, &visible, &mut scratch.casters);
+        DirectionalCasters::list(&input.space, input.casters, &visible, &mut scratch.casters);
         divide_casters(input, scratch);
         let casters = scratch.whole_casters(&input.space, input.casters);
         let any_casts = !scratch.parts.parts.is_empty()
@@ -105,7 +105,7 @@ impl DirectionalFit {
             Self::default()
         };
         let mut next = history.clone();
-        next.demands = Default::default();
+        next.requests = Default::default();
         next.axes = Some(input.space.axes);
         next.visible = Some(visible);
         let depths = held_depths(&visible, history.held_depths.as_ref());
@@ -136,8 +136,8 @@ impl DirectionalFit {
                 }
                 _ => None,
             };
-            let (held_bounds, demand) = held_bounds.unzip();
-            next.demands[cascade] = demand;
+            let (held_bounds, request) = held_bounds.unzip();
+            next.requests[cascade] = request;
             next.held[cascade] = held_bounds.or(next.held[cascade]);
             let light_bounds = held_bounds.map(|held| held.bounds());
             next.light_bounds[cascade] = light_bounds;
@@ -168,8 +168,8 @@ impl DirectionalFit {
         }
         for cascade in 0..MAX_CASCADES {
             if self.light_bounds[cascade].is_some() {
-                let demand = self.demands[cascade].as_ref()?;
-                next.held[cascade] = Some(self.held[cascade]?.again(demand)?);
+                let request = self.requests[cascade].as_ref()?;
+                next.held[cascade] = Some(self.held[cascade]?.again(request)?);
             }
         }
         Some(next)
@@ -190,7 +190,7 @@ impl DirectionalFit {
         let sampled = Sampled {
             input,
             seen: &scratch.lists.seen,
-            casters: SunCasters {
+            casters: DirectionalCasters {
                 space: &input.space,
                 boxes: input.casters,
                 visible,
@@ -277,7 +277,7 @@ fn divide_casters(input: &FitInput<'_>, scratch: &mut FitScratch) {
     let visible = &scratch.visible;
     let visible_box = Aabb::around(visible.render_min, visible.render_max);
     let visible_box = input.space.bounds(&visible_box);
-    let candidates = SunCasters {
+    let candidates = DirectionalCasters {
         space: &input.space,
         boxes: input.casters,
         visible,
@@ -295,8 +295,12 @@ fn divide_casters(input: &FitInput<'_>, scratch: &mut FitScratch) {
 
 impl FitScratch {
     /// Returns the casters that can shadow something and count as a whole.
-    fn whole_casters<'a>(&'a self, space: &'a LightSpace, boxes: Boxes<'a>) -> SunCasters<'a> {
-        SunCasters {
+    fn whole_casters<'a>(
+        &'a self,
+        space: &'a LightSpace,
+        boxes: Boxes<'a>,
+    ) -> DirectionalCasters<'a> {
+        DirectionalCasters {
             space,
             boxes,
             visible: &self.visible,

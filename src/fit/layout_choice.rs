@@ -6,7 +6,7 @@ use glam::DVec2;
 use crate::fit::axes::LightBox;
 use crate::fit::cascade_bounds::Cascade;
 use crate::fit::directional_input::{FitInput, FitLimits, Region};
-use crate::fit::layout_pack::{Content, Layer};
+use crate::fit::layout_pack::{CascadeNeed, Layer};
 use crate::fit::layout_samples::{Sample, SampleScratch, Sampled};
 use crate::fit::map_rect::HeldDepth;
 use crate::fit::required::{camera_slice, required_box};
@@ -190,8 +190,8 @@ impl<'a> Prediction<'a> {
     /// Returns the layout with the least predicted error, where every cascade more has to be worth
     /// its pass.
     ///
-    /// From one number of cascades to the next, one of them is divided where that is best. Then each
-    /// end is moved by single zones for as long as that helps.
+    /// From one number of cascades to the next, one of them is divided where that is best. Then
+    /// each end is moved by single zones for as long as that helps.
     pub fn best(&self) -> Layout {
         let mut best = Layout::single(self.limits.map_size);
         let mut least = self.cost(&best);
@@ -268,22 +268,22 @@ impl<'a> Prediction<'a> {
         all
     }
 
-    /// Divides the texels so that what is wrong is least; returns `None` for a layout that too few
+    /// Divides the texels so that the error is least; returns `None` for a layout that too few
     /// samples are known of, or that has no place.
     ///
-    /// With square texels, what is wrong is `weight * sqrt(area / texels)`, summed over the
+    /// With square texels, the squared error is `weight * sqrt(area / texels)`, summed over the
     /// cascades. At a given number of texels in all it is least where the derivatives of all
     /// summands by their texels are equal, which gives the shares.
     fn rects(&self, layout: &Layout) -> Option<[TexelRect; MAX_CASCADES]> {
         let covered = self.covered(layout);
         let mut counts = [0; MAX_CASCADES];
-        let mut contents = [Content::default(); MAX_CASCADES];
-        for (content, covered) in contents.iter_mut().zip(&covered) {
-            content.size = covered.map_or(DVec2::ZERO, |covered| covered.max - covered.min);
+        let mut needs = [CascadeNeed::default(); MAX_CASCADES];
+        for (need, covered) in needs.iter_mut().zip(&covered) {
+            need.size = covered.map_or(DVec2::ZERO, |covered| covered.max - covered.min);
         }
         for sample in self.samples {
             if let Some(cascade) = cascade_of(&covered, sample) {
-                contents[cascade].weight += sample.edges / sample.pixel;
+                needs[cascade].weight += sample.edges / sample.pixel;
                 counts[cascade] += 1;
             }
         }
@@ -293,11 +293,11 @@ impl<'a> Prediction<'a> {
         {
             return None;
         }
-        for content in &mut contents {
-            let area = content.size.element_product();
-            content.share = (content.weight * area.sqrt()).powf(2.0 / 3.0);
+        for need in &mut needs {
+            let area = need.size.element_product();
+            need.share = (need.weight * area.sqrt()).powf(2.0 / 3.0);
         }
-        self.layer.divide(&contents[..layout.cascades])
+        self.layer.divide(&needs[..layout.cascades])
     }
 
     /// Returns the root of the mean squared error of visibility, over the pixels of the images,

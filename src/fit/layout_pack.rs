@@ -12,12 +12,13 @@ const STEPS: u32 = 16;
 
 /// Describes what a rectangle is for.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Content {
+pub(crate) struct CascadeNeed {
     /// Is the fraction of all texels that it should have.
     pub share: f64,
     /// Is the world size of what it covers.
     pub size: DVec2,
-    /// Is by how much a world unit of texel size, the mean along x and y, makes shadows wrong.
+    /// Is the squared error, up to a factor, that a world unit of texel size, the mean along x and
+    /// y, adds.
     pub weight: f64,
 }
 
@@ -38,41 +39,40 @@ impl Layer {
         (step > 4 * self.margin_texels).then_some(step)
     }
 
-    /// Divides the layer among `contents`, which are cut apart in their order by one straight cut
-    /// after the other, so that the sum of what is wrong is least. Returns `None` where the layer
-    /// is too small.
-    pub fn divide(&self, contents: &[Content]) -> Option<[TexelRect; MAX_CASCADES]> {
+    /// Divides the layer among `needs`, in their order, by the guillotine cuts for which the sum of
+    /// their errors is least. Returns `None` where the layer is too small.
+    pub fn divide(&self, needs: &[CascadeNeed]) -> Option<[TexelRect; MAX_CASCADES]> {
         let mut rects = [TexelRect::default(); MAX_CASCADES];
         let whole = TexelRect::whole(self.map_size);
-        if contents.len() == 1 {
+        if needs.len() == 1 {
             rects[0] = whole;
             return Some(rects);
         }
         let step = self.step()?;
-        let wrong = self.place(contents, whole, step, &mut rects);
-        wrong.is_finite().then_some(rects)
+        let error = self.place(needs, whole, step, &mut rects);
+        error.is_finite().then_some(rects)
     }
 
-    /// Places `contents` in `rect`, fills `rects`, and returns what is wrong; infinite where they
-    /// do not fit.
+    /// Places `needs` in `rect`, fills `rects`, and returns the sum of their errors; infinite where
+    /// they do not fit.
     fn place(
         &self,
-        contents: &[Content],
+        needs: &[CascadeNeed],
         rect: TexelRect,
         step: u32,
         rects: &mut [TexelRect],
     ) -> f64 {
-        if let [content] = contents {
+        if let [need] = needs {
             rects[0] = rect;
-            return content.weight * self.mean_texel(content.size, rect.size);
+            return need.weight * self.mean_texel(need.size, rect.size);
         }
-        let total: f64 = contents.iter().map(|content| content.share).sum();
+        let total: f64 = needs.iter().map(|need| need.share).sum();
         let (mut best, mut best_rects) = (f64::INFINITY, [TexelRect::default(); MAX_CASCADES]);
         let mut first_share = 0.0;
-        for cut in 1..contents.len() {
-            first_share += contents[cut - 1].share;
-            // Of many contents only halves of about equal numbers are tried.
-            if contents.len() > 5 && cut.abs_diff(contents.len() - cut) > 1 {
+        for cut in 1..needs.len() {
+            first_share += needs[cut - 1].share;
+            // Of many needs only halves of about equal numbers are tried.
+            if needs.len() > 5 && cut.abs_diff(needs.len() - cut) > 1 {
                 continue;
             }
             for axis in 0..2 {
@@ -88,15 +88,15 @@ impl Layer {
                 second.min[axis] += part;
                 second.size[axis] -= part;
                 let mut tried = [TexelRect::default(); MAX_CASCADES];
-                let (before, after) = tried[..contents.len()].split_at_mut(cut);
-                let wrong = self.place(&contents[..cut], first, step, before)
-                    + self.place(&contents[cut..], second, step, after);
-                if wrong < best {
-                    (best, best_rects) = (wrong, tried);
+                let (before, after) = tried[..needs.len()].split_at_mut(cut);
+                let error = self.place(&needs[..cut], first, step, before)
+                    + self.place(&needs[cut..], second, step, after);
+                if error < best {
+                    (best, best_rects) = (error, tried);
                 }
             }
         }
-        rects[..contents.len()].copy_from_slice(&best_rects[..contents.len()]);
+        rects[..needs.len()].copy_from_slice(&best_rects[..needs.len()]);
         best
     }
 

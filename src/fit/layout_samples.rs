@@ -8,10 +8,10 @@ use crate::Aabb;
 use crate::fit::axes::LightBox;
 use crate::fit::camera::CameraFrustum;
 use crate::fit::caster_parts::CasterPart;
+use crate::fit::directional_casters::DirectionalCasters;
 use crate::fit::directional_input::FitInput;
 use crate::fit::point_grid::PointGrid;
 use crate::fit::spacing::Spacing;
-use crate::fit::sun_casters::SunCasters;
 use crate::fit::visible::Seen;
 
 /// Is the number of rays in a round, which all cameras of a frame share.
@@ -113,7 +113,7 @@ pub(crate) struct Sampled<'a> {
     pub input: &'a FitInput<'a>,
     pub seen: &'a [Seen],
     /// Holds the casters that count as a whole.
-    pub casters: SunCasters<'a>,
+    pub casters: DirectionalCasters<'a>,
     pub parts: &'a [CasterPart],
 }
 

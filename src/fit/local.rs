@@ -37,13 +37,14 @@ pub(crate) struct LocalFit {
     /// Holds the same distance before the range limits it; `None` where no receiver is seen within
     /// the range.
     held_reach: Option<HeldSize>,
-    demands: LocalDemands,
+    requests: LocalRequests,
 }
 
-/// Is what the last fit asked for, so that the same can be asked again.
+/// Is what a light was last fitted to, so that it can be fitted to it again.
 #[derive(Clone, Debug, Default)]
-struct LocalDemands {
-    /// Is the distance that `held_reach` holds; `None` where it was not asked for any.
+struct LocalRequests {
+    /// Is the distance to the farthest receiver that is seen within the range; `None` where there
+    /// is none.
     farthest: Option<f64>,
     /// Is the light's range.
     range: f64,
@@ -72,7 +73,7 @@ impl LocalFit {
             rects: [None; MAX_LOCAL_VIEWS],
             reach,
             held_reach,
-            demands: LocalDemands {
+            requests: LocalRequests {
                 farthest,
                 range: input.range,
                 views: [None; MAX_LOCAL_VIEWS],
@@ -116,7 +117,7 @@ impl LocalFit {
                 // A caster may begin where the reach ends; the view still has a depth range then.
                 let near = near.min(0.5 * reach);
                 next.near[index] = steady_near(near, self.near[index]);
-                next.demands.views[index] = Some((request, near));
+                next.requests.views[index] = Some((request, near));
             }
         }
         next
@@ -127,15 +128,15 @@ impl LocalFit {
     /// the whole fit is needed.
     pub fn again(&self) -> Option<Self> {
         let mut next = self.clone();
-        if let Some(farthest) = self.demands.farthest {
+        if let Some(farthest) = self.requests.farthest {
             let held = HeldSize::following(self.held_reach, farthest);
-            if held.step().min(self.demands.range) != self.reach {
+            if held.step().min(self.requests.range) != self.reach {
                 return None;
             }
             next.held_reach = Some(held);
         }
-        for (index, demand) in self.demands.views.iter().enumerate() {
-            if let Some((request, near)) = demand {
+        for (index, request) in self.requests.views.iter().enumerate() {
+            if let Some((request, near)) = request {
                 let held = HeldRect::fit(request, self.held[index].as_ref());
                 let same_near = steady_near(*near, self.near[index]) == self.near[index];
                 if Some(held.rect) != self.rects[index] || !same_near {
@@ -149,7 +150,7 @@ impl LocalFit {
 
     /// Returns the distance up to which the light matters: where the farthest receiver that is seen
     /// ends, and at most the light's range. It grows with what is seen at once, and shrinks late.
-    /// The second value is what is held of it, and the third what was asked for.
+    /// The second value is its hysteresis, and the third the distance that this was fitted to.
     fn reach(&self, input: &LocalInput<'_>, light: DVec3) -> (f64, Option<HeldSize>, Option<f64>) {
         // The six faces of a cube cover all directions together. The one view of a cone does not.
         let cone = match input.views {

@@ -173,10 +173,10 @@ pub(crate) struct HeldBounds {
     pub depth: HeldDepth,
 }
 
-/// Is what a fit asked of the bounds of a cascade, so that the same can be asked again.
+/// Is what the bounds of a cascade were fitted to, so that they can be fitted to it again.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct BoundsDemand {
-    pub request: MapRectRequest,
+pub(crate) struct BoundsRequest {
+    pub rect: MapRectRequest,
     /// Is z of the deepest receiver.
     pub far: f64,
     /// Is z of all that shadows the receivers.
@@ -190,15 +190,16 @@ pub(crate) struct BoundsDemand {
 }
 
 impl HeldBounds {
-    /// Returns what is held if the frame that asked for these bounds comes again. Returns `None`
-    /// where the bounds themselves change, because they were larger than needed for long enough.
-    pub fn again(&self, demand: &BoundsDemand) -> Option<Self> {
-        let depth = |near| HeldDepth::fit(demand.far, near, demand.least_depth, Some(&self.depth));
+    /// Returns the hysteresis after a frame with the same request. Returns `None` where the bounds
+    /// themselves change, because they were larger than needed for long enough.
+    pub fn again(&self, request: &BoundsRequest) -> Option<Self> {
+        let depth =
+            |near| HeldDepth::fit(request.far, near, request.least_depth, Some(&self.depth));
         let next = Self {
-            rect: HeldRect::fit(&demand.request, Some(&self.rect)),
-            depth: depth(demand.nearest),
+            rect: HeldRect::fit(&request.rect, Some(&self.rect)),
+            depth: depth(request.nearest),
         };
-        let same_volume = depth(demand.highest).depth == demand.reaching;
+        let same_volume = depth(request.highest).depth == request.reaching;
         (same_volume && next.bounds() == self.bounds()).then_some(next)
     }
 

@@ -13,7 +13,7 @@
 //! stability.rs    what may change the extent of a cascade
 //! image_corners.rs  the sphere around a slice of a camera's view
 //! bounds_tree.rs  a tree over boxes; boxes.rs: lists of boxes, with a tree or without
-//! sun_casters.rs  the casters of a frame as a directional light sees them
+//! directional_casters.rs  the casters of a frame as a directional light sees them
 //! visible.rs      what a camera sees of the receivers
 //! extruded_rect.rs  what reaches into the extruded map rectangle
 //! caster_shape.rs  what an engine may say of a caster's surface
@@ -42,6 +42,7 @@ mod cascade_layout;
 mod caster_parts;
 mod caster_shape;
 mod directional;
+mod directional_casters;
 mod directional_input;
 mod extruded_rect;
 mod footprint;
@@ -62,7 +63,6 @@ mod size_step;
 mod spacing;
 mod split;
 mod stability;
-mod sun_casters;
 mod texel_rect;
 mod view;
 mod view_rounding;

@@ -10,7 +10,7 @@ use crate::fit::{
 };
 use crate::light::distance_limit::{distance_limit, shadowed_texels};
 use crate::light::large_triangles::depth_reach;
-use crate::light::scene::FrameContent;
+use crate::light::scene::FrameVersion;
 use crate::receive::{
     LayerState, MapsFrame, Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, ShadowReport,
     check_bias, check_fade, check_planar_filter,
@@ -27,10 +27,10 @@ pub struct DirectionalShadowDescriptor<'a> {
     /// Is the label from which all wgpu objects of the light derive theirs; "directional shadow" if
     /// `None`, the default.
     pub label: wgpu::Label<'a>,
-    /// Is the number of texels per side of each cascade's map, or of the one that all cascades share
-    /// under [`CascadeLayout::Automatic`]: from 1 to the device's `max_texture_dimension_2d`. The
-    /// default is 2048. Cost and memory grow with its square; the blur and the displacement of an
-    /// edge shrink in proportion to it.
+    /// Is the number of texels per side of each cascade's map, or of the one that all cascades
+    /// share under [`CascadeLayout::Automatic`]: from 1 to the device's `max_texture_dimension_2d`.
+    /// The default is 2048. Cost and memory grow with its square; the blur and the displacement of
+    /// an edge shrink in proportion to it.
     pub map_size: u32,
     /// Is the number of cascades: 1..=8, and no more than the device's `max_texture_array_layers`.
     /// The default is 1, which suits a scene that is as deep as it is wide; a view to the horizon
@@ -155,7 +155,7 @@ pub struct DirectionalShadow {
     fit: DirectionalFit,
     scratch: FitScratch,
     /// Is what the maps were last recorded for.
-    last: Option<(FrameContent, DirectionalLight)>,
+    last: Option<(FrameVersion, DirectionalLight)>,
 }
 
 impl DirectionalShadow {
@@ -254,8 +254,8 @@ impl DirectionalShadow {
         frame: &ShadowFrame<'_>,
         light: &DirectionalLight,
     ) -> Result<&ShadowReport, ShadowError> {
-        let now = (frame.content, *light);
-        if self.last == Some(now) && self.maps.settled_report().is_some() {
+        let now = (frame.version, *light);
+        if self.last == Some(now) && self.maps.unchanged_report().is_some() {
             if let Some(fit) = self.fit.again() {
                 self.fit = fit;
                 return Ok(self.maps.report());

@@ -6,7 +6,7 @@ use glam::DVec3;
 use crate::cast::ViewDraws;
 use crate::fit::{LightAxes, LocalFit, LocalInput, MAX_LOCAL_VIEWS, PerspectiveView, Reached};
 use crate::light::distance_limit::range_limit;
-use crate::light::scene::FrameContent;
+use crate::light::scene::FrameVersion;
 use crate::receive::{ALL_TEXELS, LayerState, MapsFrame, ShadowMaps, ShadowMapsDescriptor};
 use crate::{ShadowError, ShadowFrame, ShadowView, report::ShadowReport};
 
@@ -23,7 +23,7 @@ pub(crate) struct LocalLights {
     layers: Vec<LayerState>,
     reached: Reached,
     /// Is what the maps were last recorded for, with the list after this.
-    last_content: Option<FrameContent>,
+    last_frame: Option<FrameVersion>,
     last_lights: Vec<LocalPlacement>,
     /// Is reused from frame to frame for its memory.
     fits: Vec<LocalFit>,
@@ -91,7 +91,7 @@ impl LocalLights {
             candidates: Vec::new(),
             layers: Vec::new(),
             reached: Reached::default(),
-            last_content: None,
+            last_frame: None,
             last_lights: Vec::new(),
             fits: Vec::new(),
         })
@@ -109,7 +109,7 @@ impl LocalLights {
 
     /// Discards the extents of earlier frames.
     pub fn reset_history(&mut self) {
-        self.last_content = None;
+        self.last_frame = None;
         for slot in &mut self.slots {
             slot.fit = LocalFit::default();
         }
@@ -117,7 +117,7 @@ impl LocalLights {
 
     /// Resets the state of a slot, whose next light then has no map until it is drawn.
     pub fn reset(&mut self, slot: u32) {
-        self.last_content = None;
+        self.last_frame = None;
         self.slots[slot as usize] = SlotState::default();
     }
 
@@ -133,7 +133,7 @@ impl LocalLights {
         if self.is_as_before(frame, lights) {
             return Ok(self.maps.report());
         }
-        self.last_content = None;
+        self.last_frame = None;
         let mut candidates = std::mem::take(&mut self.candidates);
         candidates.clear();
         for light in lights {
@@ -206,7 +206,7 @@ impl LocalLights {
             }
         }
         self.candidates = candidates;
-        self.last_content = Some(frame.content);
+        self.last_frame = Some(frame.version);
         self.last_lights.clear();
         self.last_lights.extend_from_slice(lights);
         Ok(report)
@@ -215,8 +215,8 @@ impl LocalLights {
     /// Returns whether a frame is the last one again and leaves all views as they are. The time
     /// that has passed is then counted.
     fn is_as_before(&mut self, frame: &ShadowFrame<'_>, lights: &[LocalPlacement]) -> bool {
-        if self.last_content != Some(frame.content)
-            || self.maps.settled_report().is_none()
+        if self.last_frame != Some(frame.version)
+            || self.maps.unchanged_report().is_none()
             || self.last_lights != lights
         {
             return false;

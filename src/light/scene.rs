@@ -5,7 +5,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::{DVec3, Vec3};
 
-use crate::cast::{BrokenBounds, CasterAnswers, Casters, Content, FrameCasters, sound_bounds};
+use crate::cast::{
+    BrokenBounds, CasterRecords, Casters, CastersVersion, FrameCasters, sound_bounds,
+};
 use crate::check;
 use crate::fit::{CameraFrustum, HalfSpaces, Receivers, Region};
 use crate::{Aabb, CameraView, ShadowError};
@@ -69,10 +71,10 @@ pub struct ShadowFrameDescriptor<'d, 'c> {
     pub receivers: &'d [Aabb],
 }
 
-/// Identifies the content of a frame: two frames with equal ones are equal.
+/// Identifies the input of a frame: two frames with equal versions are equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct FrameContent {
-    casters: Content,
+pub(crate) struct FrameVersion {
+    casters: CastersVersion,
     /// Is unique in the process for all but the casters.
     surroundings: u64,
 }
@@ -91,7 +93,7 @@ static NEXT_SURROUNDINGS: AtomicU64 = AtomicU64::new(0);
 /// Holds the scene that lights share. It reuses the memory of its lists from frame to frame.
 #[derive(Debug, Default)]
 pub struct ShadowScene {
-    answers: CasterAnswers,
+    records: CasterRecords,
     broken: Vec<BrokenBounds>,
     receivers: Vec<Aabb>,
     cameras: Vec<CameraFrustum>,
@@ -150,15 +152,15 @@ impl ShadowScene {
             let place = ("ShadowFrameDescriptor::receivers", index);
             sound_bounds(place, *bounds, &mut self.broken)
         }));
-        let casters = FrameCasters::ask(
+        let casters = FrameCasters::new(
             "ShadowFrameDescriptor::casters",
             descriptor.casters,
-            &mut self.answers,
+            &mut self.records,
             &mut self.broken,
         );
         Ok(ShadowFrame {
-            content: FrameContent {
-                casters: casters.content(),
+            version: FrameVersion {
+                casters: casters.version(),
                 surroundings,
             },
             origin: descriptor.origin,
@@ -213,7 +215,7 @@ impl ShadowScene {
 /// Holds a checked frame of a [`ShadowScene`]. Lights are recorded with it.
 #[derive(Clone, Copy)]
 pub struct ShadowFrame<'a> {
-    pub(crate) content: FrameContent,
+    pub(crate) version: FrameVersion,
     pub(crate) origin: DVec3,
     pub(crate) region: Region<'a>,
     /// Holds the same region as intersections of half-spaces: receivers count where they lie in one

@@ -38,8 +38,9 @@ pub struct ShadowMaps {
     views: Vec<ViewDraws>,
     uniform_values: Vec<ShadowViewUniform>,
     report: ShadowReport,
-    /// States that the last frame left all views as they were, so that an equal frame does the same.
-    is_settled: bool,
+    /// States that the last frame left all views as they were, so that an equal frame does the
+    /// same.
+    is_unchanged: bool,
     memory: Memory,
 }
 
@@ -65,7 +66,8 @@ pub(crate) struct ShadowMapsDescriptor<'a> {
     pub layers_field: &'static str,
     pub sampling: Sampling,
     pub selection: Selection,
-    /// States that all views are rectangles of one layer, which must be those of a directional light.
+    /// States that all views are rectangles of one layer, which must be those of a directional
+    /// light.
     pub shares_layer: bool,
     /// States that the maps are those of a pool, whose WGSL function takes the index of a light.
     pub indexed: bool,
@@ -138,7 +140,7 @@ impl ShadowMaps {
             views: Vec::new(),
             uniform_values: vec![empty_view_uniform(0, Vec3::ZERO, f64::INFINITY); views as usize],
             report,
-            is_settled: false,
+            is_unchanged: false,
             memory: Memory::default(),
         })
     }
@@ -167,8 +169,8 @@ impl ShadowMaps {
         self.map.size()
     }
 
-    /// Returns the uniform buffer, which holds one [`ShadowViewUniform`] per view, that is per layer unless cascades
-    /// share one.
+    /// Returns the uniform buffer, which holds one [`ShadowViewUniform`] per view, that is per
+    /// layer unless cascades share one.
     pub fn uniform_buffer(&self) -> &wgpu::Buffer {
         self.uniforms.buffer()
     }
@@ -213,7 +215,7 @@ impl ShadowMaps {
     /// Resets the state of all layers and of the uniform buffer, so that the next frame draws and
     /// uploads everything.
     pub(crate) fn invalidate(&mut self) {
-        self.is_settled = false;
+        self.is_unchanged = false;
         self.recorder.invalidate();
         self.uniforms.invalidate();
     }
@@ -249,7 +251,7 @@ impl ShadowMaps {
             casters,
             predicted_error,
         } = frame;
-        self.is_settled = false;
+        self.is_unchanged = false;
         let device = &self.device.clone();
         let prepared = self
             .recorder
@@ -284,13 +286,14 @@ impl ShadowMaps {
         self.memory.views = old_views;
         self.report.predicted_error = predicted_error;
         self.fill_report(layers, &casters);
-        self.is_settled = self.views.iter().all(|draws| !draws.deferred) && self.report.passes == 0;
+        self.is_unchanged =
+            self.views.iter().all(|draws| !draws.deferred) && self.report.passes == 0;
         Ok(&self.report)
     }
 
     /// Returns the report of the last frame if an equal frame leaves all views as they are.
-    pub(crate) fn settled_report(&self) -> Option<&ShadowReport> {
-        self.is_settled.then_some(&self.report)
+    pub(crate) fn unchanged_report(&self) -> Option<&ShadowReport> {
+        self.is_unchanged.then_some(&self.report)
     }
 
     /// Returns the uniforms of the frame, one per view.

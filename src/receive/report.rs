@@ -26,13 +26,14 @@ pub enum ViewStatus {
 pub struct ViewReport {
     /// Is the layer of the depth texture that the view is rendered into.
     pub layer: u32,
-    /// Is the rectangle of the layer that the view is rendered into; empty for a view without a map.
+    /// Is the rectangle of the layer that the view is rendered into; empty for a view without a
+    /// map.
     pub texels: TexelRect,
     /// Tells how the view was brought up to date.
     pub status: ViewStatus,
     /// Counts the casters in the view, each copy of a mesh as one: those that its pass drew, if it
-    /// had one, and those that were copied. Where all faces of a point light were drawn in one pass, it counts all casters of
-    /// that pass.
+    /// had one, and those that were copied. Where all faces of a point light were drawn in one
+    /// pass, it counts all casters of that pass.
     pub casters: u32,
     /// Counts those of the casters that were not drawn: they had not changed for some frames, and
     /// the static-caster cache, which contains them, was copied into the layer before the other
@@ -46,8 +47,8 @@ pub struct ViewReport {
     /// Counts the triangles of the casters that were not copied, as far as the casters report them
     /// ([`ShadowCaster::triangles`](crate::ShadowCaster::triangles)).
     pub triangles: u64,
-    /// Counts the casters, each copy of a mesh as one, that were culled because their shadows cannot fall on what the view
-    /// covers.
+    /// Counts the casters, each copy of a mesh as one, that were culled because their shadows
+    /// cannot fall on what the view covers.
     pub culled: u32,
     /// Is the world size of a texel along the map's x and y. For a local light it is that at the
     /// farthest receiver that is seen within its range, where it is largest. It is zero for a view
@@ -100,9 +101,10 @@ pub struct ShadowReport {
     /// ([`OmniShadow`](crate::OmniShadow) states when).
     pub passes: u32,
     /// Is the error that is predicted for the layout of a directional light under
-    /// [`CascadeLayout::Automatic`](crate::CascadeLayout::Automatic): the root of the mean squared error of visibility
-    /// over the pixels of the images, for images of 720 rows and the default filter. It is estimated from bounds, so
-    /// that it serves to compare layouts and scenes rather than as a promise. It is `None` for all other lights.
+    /// [`CascadeLayout::Automatic`](crate::CascadeLayout::Automatic): the root of the mean squared
+    /// error of visibility over the pixels of the images, for images of 720 rows and the default
+    /// filter. It is estimated from bounds, so that it serves to compare layouts and scenes rather
+    /// than as a promise. It is `None` for all other lights.
     pub predicted_error: Option<f32>,
     /// Is the device memory, in bytes, of the depth texture and of the static-caster caches.
     pub bytes_held: u64,

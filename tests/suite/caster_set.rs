@@ -280,8 +280,8 @@ impl Light {
 }
 
 /// Checks that a set and a list in another order each frame give the same views, uniforms, reports
-/// and maps, and that these are the maps that are drawn anew, while all may change; and that nothing
-/// is drawn where nothing changed.
+/// and maps, and that these are the maps that are drawn anew, while all may change; and that
+/// nothing is drawn where nothing changed.
 #[test]
 fn a_set_and_a_list_in_any_order_give_the_same_maps() {
     let gpu = vulkan();

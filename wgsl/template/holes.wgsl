@@ -51,7 +51,8 @@ const ANY_VIEW: u32 = 0u;
 const CASCADE: u32 = 0u;
 const NEXT: u32 = 1u;
 
-// Is the layer of the map that a lookup reads: `place.layer`, or `0u` where all views of the light share a layer.
+// Is the layer of the map that a lookup reads: `place.layer`, or `0u` where all views of the light
+// share a layer.
 const LAYER: u32 = 0u;
 
 // BIAS is the bias for the kind of light: `plane_directional`, `normal_offset_local` and so on.

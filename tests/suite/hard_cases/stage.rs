@@ -153,11 +153,11 @@ pub fn shaped(mesh: &Mesh, pipeline: &CasterPipeline) -> MeshCaster {
 /// Returns what `dark` says of a position on level ground, if it says the same `margin` around it.
 pub fn settled(dark: impl Fn(DVec3) -> bool, position: DVec3, margin: f64) -> Option<bool> {
     let here = dark(position);
-    let is_settled = (0..12).all(|step| {
+    let is_unchanged = (0..12).all(|step| {
         let angle = f64::from(step) * std::f64::consts::TAU / 12.0;
         dark(position + DVec3::new(angle.cos(), 0.0, angle.sin()) * margin) == here
     });
-    is_settled.then_some(here)
+    is_unchanged.then_some(here)
 }
 
 /// Returns whether two visibilities are further apart than `band`, or are NaN.

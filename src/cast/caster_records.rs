@@ -41,7 +41,7 @@ impl CasterFacts {
 }
 
 /// Is what the methods of one caster returned, or what they say of one of its instances.
-pub(crate) struct CasterAnswer {
+pub(crate) struct CasterRecord {
     bounds: Aabb,
     casts: bool,
     receives: bool,
@@ -49,8 +49,8 @@ pub(crate) struct CasterAnswer {
     facts: CasterFacts,
 }
 
-impl CasterAnswer {
-    /// Calls the methods of a caster, and then `take` with the answer, or with one for each of its
+impl CasterRecord {
+    /// Calls the methods of a caster, and then `take` with the record, or with one for each of its
     /// instances. `listed` is the index of the caster in the engine's list or set.
     pub fn each(caster: &(impl ShadowCaster + ?Sized), listed: u32, mut take: impl FnMut(Self)) {
         let (casts, receives) = (caster.casts(), caster.receives());
@@ -105,14 +105,15 @@ impl CasterAnswer {
 fn batch_hash(geometry: &MeshGeometry, mirrors: bool) -> NonZeroU32 {
     let pipeline = geometry.pipeline(mirrors).sort_key();
     let mixed = (geometry.sort_key() ^ pipeline).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    // The upper bits of the product depend on all bits of the factors.
+    // This is Fibonacci hashing (Knuth, The Art of Computer Programming 3, 6.4), by 2^64 over the
+    // golden ratio: the upper bits of the product depend on all bits of the factors.
     NonZeroU32::new((mixed >> 32) as u32).unwrap_or(NonZeroU32::MIN)
 }
 
-/// Identifies a state of some answers: two states with equal numbers are equal.
+/// Identifies a state of some records: two states with equal numbers are equal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Content {
-    /// Identifies the answers in the process.
+pub(crate) struct CastersVersion {
+    /// Identifies the records in the process.
     source: u64,
     /// Counts the changes.
     changes: u64,
@@ -120,7 +121,7 @@ pub(crate) struct Content {
     frame: u64,
 }
 
-impl Content {
+impl CastersVersion {
     /// Returns the number of a state that lasts for one frame.
     pub fn in_frame(self, frame: u64) -> Self {
         Self {
@@ -130,10 +131,10 @@ impl Content {
     }
 }
 
-/// Holds the answers of casters. A caster with bounds that are neither finite nor empty counts as
+/// Holds the records of casters. A caster with bounds that are neither finite nor empty counts as
 /// one that neither casts nor receives.
 #[derive(Debug)]
-pub(crate) struct CasterAnswers {
+pub(crate) struct CasterRecords {
     /// Has one entry per caster, empty for one that does not cast.
     pub casts: Vec<Aabb>,
     /// Has one entry per caster, empty for one that does not receive.
@@ -146,18 +147,18 @@ pub(crate) struct CasterAnswers {
     pub broken: BTreeMap<u32, Aabb>,
     /// Counts the casters that may look different in every frame.
     pub always_changing: usize,
-    content: Content,
+    version: CastersVersion,
 }
 
 static NEXT_SOURCE: AtomicU64 = AtomicU64::new(0);
 
-impl Default for CasterAnswers {
+impl Default for CasterRecords {
     fn default() -> Self {
         Self::new(false)
     }
 }
 
-impl CasterAnswers {
+impl CasterRecords {
     /// Makes an empty list, with a tree that follows it or without one.
     pub fn new(has_tree: bool) -> Self {
         Self {
@@ -168,7 +169,7 @@ impl CasterAnswers {
             tree: has_tree.then(BoundsTree::default),
             broken: BTreeMap::new(),
             always_changing: 0,
-            content: Content {
+            version: CastersVersion {
                 source: NEXT_SOURCE.fetch_add(1, Ordering::Relaxed),
                 changes: 0,
                 frame: 0,
@@ -177,13 +178,13 @@ impl CasterAnswers {
     }
 
     /// Returns the number of the present state.
-    pub fn content(&self) -> Content {
-        self.content
+    pub fn version(&self) -> CastersVersion {
+        self.version
     }
 
     /// Makes the present state another than that of all frames before.
     pub fn count_frame(&mut self) {
-        self.content.frame += 1;
+        self.version.frame += 1;
     }
 
     /// Returns the number of entries.
@@ -191,9 +192,9 @@ impl CasterAnswers {
         self.facts.len()
     }
 
-    /// Sets the answer at `index`, which is at most the number of entries.
-    pub fn put(&mut self, index: u32, answer: &CasterAnswer) {
-        let bounds = answer.bounds;
+    /// Sets the record at `index`, which is at most the number of entries.
+    pub fn put(&mut self, index: u32, record: &CasterRecord) {
+        let bounds = record.bounds;
         if !self.broken.is_empty() {
             self.broken.remove(&index);
         }
@@ -210,9 +211,9 @@ impl CasterAnswers {
         };
         self.write(
             index,
-            (role(answer.casts), role(answer.receives)),
-            answer.shape,
-            answer.facts,
+            (role(record.casts), role(record.receives)),
+            record.shape,
+            record.facts,
         );
     }
 
@@ -232,7 +233,7 @@ impl CasterAnswers {
             let gone = self.facts.drain(count..);
             self.always_changing -= gone.filter(|facts| facts.revision.is_none()).count();
             self.broken.split_off(&(count as u32));
-            self.content.changes += 1;
+            self.version.changes += 1;
         }
     }
 
@@ -261,7 +262,7 @@ impl CasterAnswers {
             self.receives.push(receives);
             self.shapes.push(shape);
             self.facts.push(facts);
-            self.content.changes += 1;
+            self.version.changes += 1;
             self.follow(index, &Aabb::EMPTY, &either(&casts, &receives));
             return;
         }
@@ -272,13 +273,13 @@ impl CasterAnswers {
             self.casts[at] = casts;
             self.receives[at] = receives;
             self.shapes[at] = shape;
-            self.content.changes += 1;
+            self.version.changes += 1;
             self.follow(index, &before, &either(&casts, &receives));
         }
         self.always_changing -= usize::from(self.facts[at].revision.is_none());
         if self.facts[at] != facts {
             self.facts[at] = facts;
-            self.content.changes += 1;
+            self.version.changes += 1;
         }
     }
 

@@ -13,30 +13,30 @@ const AROUND_STEPS: f64 = 32.0;
 
 /// Is a caster as a directional light sees it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct SunCaster {
+pub(crate) struct DirectionalCaster {
     pub index: u32,
     pub light: LightBox,
 }
 
 /// Holds the casters of a frame that can shadow something visible, and that count as a whole.
 #[derive(Clone, Copy)]
-pub(crate) struct SunCasters<'a> {
+pub(crate) struct DirectionalCasters<'a> {
     pub space: &'a LightSpace,
     pub boxes: Boxes<'a>,
     pub visible: &'a SeenBounds,
     /// Holds the casters that are divided into parts, in ascending order. They do not count.
     pub divided: &'a [u32],
     /// Holds the casters where no tree finds them; those that are divided are among them.
-    pub listed: &'a [SunCaster],
+    pub listed: &'a [DirectionalCaster],
 }
 
-impl<'a> SunCasters<'a> {
+impl<'a> DirectionalCasters<'a> {
     /// Lists the casters that can shadow something, where no tree finds them.
     pub fn list(
         space: &LightSpace,
         boxes: Boxes<'_>,
         visible: &SeenBounds,
-        listed: &mut Vec<SunCaster>,
+        listed: &mut Vec<DirectionalCaster>,
     ) {
         listed.clear();
         if boxes.tree.is_none() {
@@ -44,7 +44,7 @@ impl<'a> SunCasters<'a> {
             boxes.for_each(|index, bounds| {
                 if visible.can_be_shadowed_by(bounds, toward_light) {
                     let light = space.bounds(bounds);
-                    listed.push(SunCaster { index, light });
+                    listed.push(DirectionalCaster { index, light });
                 }
             });
         }
