@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use glam::Mat4;
 
 use crate::cast::instances::{CasterInstances, Instance, append_matrix};
-use crate::cast::mesh_check::{INSTANCED_MESH, check_bounds, check_buffers, check_pipeline};
+use crate::cast::mesh_check::{INSTANCED_MESH, check_bounds, check_buffers};
 use crate::cast::mesh_descriptor::{InstancedMeshCasterDescriptor, MeshIndices};
 use crate::cast::mesh_geometry::MeshGeometry;
 use crate::cast::{CasterPipeline, Revision, ShadowCaster};
@@ -83,11 +83,14 @@ impl InstancedMeshCaster {
         descriptor: &InstancedMeshCasterDescriptor<'_>,
     ) -> Result<Self, CasterError> {
         let fields = &INSTANCED_MESH;
-        check_pipeline(fields, device, descriptor.pipeline)?;
         check_bounds(fields.bounds_model, &descriptor.bounds_model)?;
-        let indices = descriptor.indices.clone();
-        check_buffers(fields, descriptor.pipeline, descriptor.vertices, &indices)?;
-        let geometry = MeshGeometry::new(descriptor.pipeline, descriptor.vertices, indices);
+        let geometry = MeshGeometry::new(
+            fields,
+            device,
+            descriptor.pipeline,
+            descriptor.vertices,
+            &descriptor.indices,
+        )?;
         if geometry.matrix_layout().is_none() {
             return Err(CasterError::NoInstanceMatrix {
                 field: fields.pipeline,

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use glam::Mat4;
 
 use crate::cast::instances::{CasterInstances, Instance, append_matrix};
-use crate::cast::mesh_check::{MESH, check_bounds, check_buffers, check_matrix, check_pipeline};
+use crate::cast::mesh_check::{MESH, check_bounds, check_buffers, check_matrix};
 use crate::cast::mesh_descriptor::{MeshCasterDescriptor, MeshIndices};
 use crate::cast::mesh_geometry::MeshGeometry;
 use crate::cast::{CasterPipeline, Revision, ShadowCaster};
@@ -52,18 +52,13 @@ impl MeshCaster {
         descriptor: &MeshCasterDescriptor<'_>,
     ) -> Result<Self, CasterError> {
         check_matrix(&descriptor.render_from_model)?;
-        check_pipeline(&MESH, device, descriptor.pipeline)?;
-        check_buffers(
+        let geometry = MeshGeometry::new(
             &MESH,
+            device,
             descriptor.pipeline,
             descriptor.vertices,
             &descriptor.indices,
         )?;
-        let geometry = MeshGeometry::new(
-            descriptor.pipeline,
-            descriptor.vertices,
-            descriptor.indices.clone(),
-        );
         let instance = checked_instance(
             &geometry,
             &descriptor.bounds_model,

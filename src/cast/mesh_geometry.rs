@@ -3,8 +3,10 @@
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::ops::Range;
 
+use crate::cast::mesh_check::{MeshFields, check_buffers, check_pipeline};
 use crate::cast::mesh_descriptor::MeshIndices;
 use crate::cast::{CasterPipeline, ModelTransform};
+use crate::error::CasterError;
 
 /// Is a pipeline with the buffers and the range that it draws. Meshes of equal geometry are drawn
 /// in one call.
@@ -20,14 +22,23 @@ pub(crate) struct MeshGeometry {
 }
 
 impl MeshGeometry {
-    /// Keeps handles of what has been checked.
-    pub fn new(pipeline: &CasterPipeline, vertices: &wgpu::Buffer, indices: MeshIndices) -> Self {
-        Self {
+    /// Checks a pipeline and buffers of `device`, and keeps handles of them. `fields` are their
+    /// paths, for errors.
+    pub fn new(
+        fields: &MeshFields,
+        device: &wgpu::Device,
+        pipeline: &CasterPipeline,
+        vertices: &wgpu::Buffer,
+        indices: &MeshIndices,
+    ) -> Result<Self, CasterError> {
+        check_pipeline(fields, device, pipeline)?;
+        check_buffers(fields, pipeline, vertices, indices)?;
+        Ok(Self {
             pipelines: [pipeline.clone(), pipeline.mirrored()],
             vertices: vertices.clone(),
-            sort_key: sort_key(vertices, &indices),
-            indices,
-        }
+            sort_key: sort_key(vertices, indices),
+            indices: indices.clone(),
+        })
     }
 
     /// Replaces the buffers and the range by others that have been checked.

@@ -4,7 +4,9 @@
 
 use crate::ShadowError;
 use crate::error::DeviceError;
-use crate::gpu::{DepthFormat, DepthMap, capture_device_errors};
+use crate::gpu::{
+    DepthFormat, DepthMap, FullscreenTarget, capture_device_errors, fullscreen_pipeline,
+};
 use crate::shader;
 
 /// Holds the pipelines of a layer that is divided among views, and the texture in which these views
@@ -39,12 +41,13 @@ impl SharedLayer {
         let create = || {
             let layout = create_layout(device, label);
             let module = create_module(device, label);
-            let pipeline = |layouts: &[_], fragment| {
-                depth_pipeline(device, label, layouts, &module, fragment, format)
+            let pipeline = |layout, fragment| {
+                let target = FullscreenTarget::Depth(format.texture_format());
+                fullscreen_pipeline(device, label, layout, &module, fragment, target)
             };
             Self {
-                clear: pipeline(&[], None),
-                copy: pipeline(&[Some(&layout)], Some("shadow_copy_fragment")),
+                clear: pipeline(None, None),
+                copy: pipeline(Some(&layout), Some("shadow_copy_fragment")),
                 sampler: device.create_sampler(&wgpu::SamplerDescriptor {
                     label: Some(label),
                     ..Default::default()
@@ -122,7 +125,7 @@ impl SharedLayer {
 }
 
 fn create_module(device: &wgpu::Device, label: &str) -> wgpu::ShaderModule {
-    let source = [shader::FULLSCREEN.source, shader::RECT_COPY.source].concat();
+    let source = shader::compose(&[shader::RECT_COPY.name]).unwrap_or_default();
     device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(label),
         source: wgpu::ShaderSource::Wgsl(source.into()),
@@ -145,49 +148,5 @@ fn create_layout(device: &wgpu::Device, label: &str) -> wgpu::BindGroupLayout {
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some(label),
         entries: &[entry(0, map), entry(1, sampler)],
-    })
-}
-
-/// Makes a pipeline whose draw of three vertices sets all depths within the scissor rectangle: to
-/// what the fragment stage returns, or to the far plane where there is none.
-fn depth_pipeline(
-    device: &wgpu::Device,
-    label: &str,
-    bind_group_layouts: &[Option<&wgpu::BindGroupLayout>],
-    module: &wgpu::ShaderModule,
-    fragment_entry: Option<&str>,
-    format: DepthFormat,
-) -> wgpu::RenderPipeline {
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some(label),
-        bind_group_layouts,
-        immediate_size: 0,
-    });
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(label),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some("shadow_fullscreen_vertex"),
-            compilation_options: Default::default(),
-            buffers: &[],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: format.texture_format(),
-            depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::Always),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        }),
-        multisample: wgpu::MultisampleState::default(),
-        fragment: fragment_entry.map(|entry| wgpu::FragmentState {
-            module,
-            entry_point: Some(entry),
-            compilation_options: Default::default(),
-            targets: &[],
-        }),
-        multiview_mask: None,
-        cache: None,
     })
 }

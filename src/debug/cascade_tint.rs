@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Mat4;
 
 use crate::error::DeviceRefusal;
-use crate::gpu::{capture_device_errors, filled_buffer, fullscreen_pipeline};
+use crate::gpu::{FullscreenTarget, capture_device_errors, filled_buffer, fullscreen_pipeline};
 use crate::receive::{SampledMaps, ShadowViewUniform};
 use crate::shader;
 
@@ -151,13 +151,12 @@ fn create_pipeline(
         }),
         write_mask: wgpu::ColorWrites::ALL,
     };
-    let entry = "shadow_tint_fragment";
     fullscreen_pipeline(
         device,
         "shadow cascade tint",
-        layout,
+        Some(layout),
         &module,
-        entry,
-        target,
+        Some("shadow_tint_fragment"),
+        FullscreenTarget::Color(target),
     )
 }

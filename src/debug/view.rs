@@ -7,7 +7,7 @@ use crate::debug::cascade_tint::CascadeTint;
 use crate::debug::limits::check_debug_view;
 use crate::error::DeviceError;
 use crate::error::{DebugViewError, DeviceRefusal};
-use crate::gpu::{capture_device_errors, filled_buffer, fullscreen_pipeline};
+use crate::gpu::{FullscreenTarget, capture_device_errors, filled_buffer, fullscreen_pipeline};
 use crate::receive::{Selection, ShadowMaps, ShadowViewUniform};
 use crate::shader;
 
@@ -87,8 +87,9 @@ impl DebugView {
                 source: wgpu::ShaderSource::Wgsl(source.into()),
             });
             let pipeline = |entry| {
-                let target = format.into();
-                fullscreen_pipeline(device, "shadow debug view", &layout, &module, entry, target)
+                let (label, entry) = ("shadow debug view", Some(entry));
+                let target = FullscreenTarget::Color(format.into());
+                fullscreen_pipeline(device, label, Some(&layout), &module, entry, target)
             };
             Self {
                 device: device.clone(),

@@ -5,15 +5,13 @@
 //! for each receiver, the intersection of the caster's bounds with the receiver's bounds extruded
 //! toward the light.
 
-use std::cmp::Ordering;
-
 use glam::DVec3;
 
 use crate::Aabb;
 use crate::fit::axes::{LightBox, LightSpace};
 use crate::fit::caster_shape::CasterShape;
 use crate::fit::directional_casters::DirectionalCasters;
-use crate::fit::spacing::Spacing;
+use crate::fit::large_casters::{Large, LargestCasters, order_of_bounds};
 use crate::fit::view_rounding::position_error_world;
 use crate::fit::visible::SeenReceiver;
 
@@ -48,65 +46,6 @@ struct Casters<'a> {
     shapes: &'a [CasterShape],
 }
 
-/// Is a caster that may be divided.
-#[derive(Clone, Copy, Debug)]
-struct Large {
-    caster: u32,
-    /// Is the wider side, seen from the light, of the area of visible receivers that it covers.
-    side: f64,
-    light: LightBox,
-    bounds: Aabb,
-}
-
-impl Large {
-    /// Compares two casters by size, the larger first, and equally large ones by where they are, so
-    /// that the order in which they are found does not matter.
-    fn order(&self, other: &Self) -> Ordering {
-        let by_place = || order_of_bounds(&self.bounds, &other.bounds);
-        other.side.total_cmp(&self.side).then_with(by_place)
-    }
-}
-
-/// Collects the largest casters.
-struct LargestCasters<'a> {
-    large: &'a mut Vec<Large>,
-    limit: usize,
-    /// Is a side below which a caster is none of the largest.
-    least_side: f64,
-    /// Holds what the others cover.
-    rest: LightBox,
-}
-
-impl LargestCasters<'_> {
-    fn add(&mut self, large: Large) {
-        if large.side < self.least_side {
-            self.rest.union(&large.light);
-            return;
-        }
-        self.large.push(large);
-        if self.large.len() > 4 * self.limit {
-            self.select();
-        }
-    }
-
-    /// Keeps no more than the limit.
-    fn select(&mut self) {
-        if self.large.len() > self.limit {
-            self.large.select_nth_unstable_by(self.limit, Large::order);
-            for large in self.large.drain(self.limit..) {
-                self.rest.union(&large.light);
-            }
-            let sides = self.large.iter().map(|large| large.side);
-            self.least_side = sides.fold(f64::INFINITY, f64::min);
-        }
-    }
-
-    /// Returns whether a caster that covers no more than `covered` may change what is collected.
-    fn changes_with(&self, covered: &LightBox) -> bool {
-        covered.widest_side() >= self.least_side || !self.rest.holds_xy(covered)
-    }
-}
-
 /// Holds lists that are reused from frame to frame.
 #[derive(Debug, Default)]
 pub(crate) struct PartScratch {
@@ -134,39 +73,13 @@ impl PartScratch {
         seen: &[SeenReceiver],
     ) {
         self.clear();
-        self.large.clear();
         let casters = &Casters {
             space: candidates.space,
             bounds: candidates.boxes.bounds,
             shapes,
         };
-        let mut largest = LargestCasters {
-            large: &mut self.large,
-            limit: MAX_DIVIDED.min(MAX_PAIRS / seen.len().max(1)).max(1),
-            least_side: 0.0,
-            rest: LightBox::EMPTY,
-        };
-        candidates.walk(
-            Spacing::around(candidates.space.origin, visible),
-            &mut largest,
-            |largest, around| {
-                let covered = around.intersection_xy(visible);
-                covered.is_some_and(|covered| largest.changes_with(&covered))
-            },
-            |largest, caster, bounds, light| {
-                if let Some(covered) = light.intersection_xy(visible) {
-                    largest.add(Large {
-                        caster,
-                        side: covered.widest_side(),
-                        light: covered,
-                        bounds: *bounds,
-                    });
-                }
-            },
-        );
-        largest.select();
-        let others = largest.rest;
-        self.large.sort_unstable_by(Large::order);
+        let limit = MAX_DIVIDED.min(MAX_PAIRS / seen.len().max(1)).max(1);
+        let others = LargestCasters::find(candidates, visible, limit, &mut self.large);
         // Starting from the largest, each caster is divided if it is large in relation to the area
         // that the parts of the casters before it and the whole casters after it cover.
         let limit = self.large.len();
@@ -198,18 +111,6 @@ impl PartScratch {
         });
         self.divided.sort_unstable();
     }
-}
-
-/// Orders boxes by their coordinates.
-fn order_of_bounds(a: &Aabb, b: &Aabb) -> Ordering {
-    let coordinates = |bounds: &Aabb| [bounds.min.to_array(), bounds.max.to_array()];
-    let pairs = coordinates(a)
-        .into_iter()
-        .flatten()
-        .zip(coordinates(b).into_iter().flatten());
-    pairs.fold(Ordering::Equal, |order, (a, b)| {
-        order.then_with(|| a.total_cmp(&b))
-    })
 }
 
 /// Adds the parts of a caster behind which receivers of `seen` lie, one part per octave of height.

@@ -12,12 +12,13 @@
 //! split.rs        the depths at which one cascade ends and the next begins
 //! stability.rs    what may change the extent of a cascade
 //! image_corners.rs  the sphere around a slice of a camera's view
-//! bounds_tree.rs  a tree over boxes; boxes.rs: lists of boxes, with a tree or without
+//! bounds_tree/    a tree over boxes; boxes.rs: lists of boxes, with a tree or without
 //! directional_casters.rs  the casters of a frame as a directional light sees them
 //! visible.rs      what a camera sees of the receivers
 //! extruded_rect.rs  what reaches into the extruded map rectangle
 //! caster_shape.rs  what an engine may say of a caster's surface
-//! caster_parts.rs  the parts of large casters behind which receivers lie
+//! caster_parts.rs  the parts of large casters behind which receivers lie; large_casters.rs: which
+//!                 casters these are
 //! required.rs     what a cascade must cover of the receivers
 //! cascade_bounds.rs  the light-space bounds of a cascade
 //! cascade_layout.rs  how texels may be divided among cascades
@@ -47,6 +48,7 @@ mod directional_input;
 mod extruded_rect;
 mod footprint;
 mod image_corners;
+mod large_casters;
 mod layout;
 mod layout_choice;
 mod layout_pack;

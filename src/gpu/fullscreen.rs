@@ -1,21 +1,46 @@
 //! Makes the pipelines of passes over a whole viewport.
 
-/// Makes a pipeline for passes with one colour target, no depth attachment and one sample. `module`
-/// contains `wgsl/pass/fullscreen.wgsl` and `fragment_entry`. The caller's error scope captures
-/// device errors.
+/// Selects what a pass over a whole viewport writes.
+#[derive(Clone, Debug)]
+pub(crate) enum FullscreenTarget {
+    /// Writes one colour target, without a depth attachment.
+    Color(wgpu::ColorTargetState),
+    /// Writes all depths of an attachment of this format, without a colour target: those that the
+    /// fragment stage returns, or the far plane of reversed depth where there is no such stage.
+    Depth(wgpu::TextureFormat),
+}
+
+/// Makes a pipeline for passes with one sample, whose draw of three vertices covers the viewport.
+/// `module` contains `wgsl/pass/fullscreen.wgsl` and `fragment_entry`. The caller's error scope
+/// captures device errors.
 pub(crate) fn fullscreen_pipeline(
     device: &wgpu::Device,
     label: &str,
-    layout: &wgpu::BindGroupLayout,
+    layout: Option<&wgpu::BindGroupLayout>,
     module: &wgpu::ShaderModule,
-    fragment_entry: &str,
-    target: wgpu::ColorTargetState,
+    fragment_entry: Option<&str>,
+    target: FullscreenTarget,
 ) -> wgpu::RenderPipeline {
+    let layouts: &[_] = &[layout];
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(label),
-        bind_group_layouts: &[Some(layout)],
+        bind_group_layouts: if layout.is_some() { layouts } else { &[] },
         immediate_size: 0,
     });
+    let (color, depth_stencil) = match target {
+        FullscreenTarget::Color(target) => (Some(target), None),
+        FullscreenTarget::Depth(format) => (
+            None,
+            Some(wgpu::DepthStencilState {
+                format,
+                depth_write_enabled: Some(true),
+                depth_compare: Some(wgpu::CompareFunction::Always),
+                stencil: wgpu::StencilState::default(),
+                bias: wgpu::DepthBiasState::default(),
+            }),
+        ),
+    };
+    let targets: &[_] = &[color.clone()];
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(label),
         layout: Some(&layout),
@@ -26,13 +51,13 @@ pub(crate) fn fullscreen_pipeline(
             buffers: &[],
         },
         primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
+        depth_stencil,
         multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
+        fragment: fragment_entry.map(|entry| wgpu::FragmentState {
             module,
-            entry_point: Some(fragment_entry),
+            entry_point: Some(entry),
             compilation_options: Default::default(),
-            targets: &[Some(target)],
+            targets: if color.is_some() { targets } else { &[] },
         }),
         multiview_mask: None,
         cache: None,

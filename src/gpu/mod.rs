@@ -20,7 +20,7 @@ mod upload;
 
 pub use depth_format::DepthFormat;
 pub(crate) use depth_map::{DepthMap, allocated_layers};
-pub(crate) use fullscreen::fullscreen_pipeline;
+pub(crate) use fullscreen::{FullscreenTarget, fullscreen_pipeline};
 pub(crate) use limits::Need;
 pub(crate) use multiview::{ALL_FACES_MASK, FACE_COUNT, supports_cube_multiview};
 pub(crate) use scope::{capture_device_errors, filled_buffer, filled_buffer_of};

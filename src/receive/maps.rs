@@ -354,7 +354,7 @@ impl ShadowMaps {
                 Some((draws, sampled)) => ViewReport {
                     slice: base.slice,
                     max_peter_panning_world: self.sampling.max_peter_panning_world(&sampled),
-                    ..view_report(draws, casters)
+                    ..ViewReport::of(draws, casters)
                 },
             }
         });
@@ -379,32 +379,4 @@ impl ShadowMaps {
 /// Returns a function from the index of a view to its layer.
 fn layer_of(shares_layer: bool) -> impl Fn(u32) -> u32 {
     move |index| if shares_layer { 0 } else { index }
-}
-
-fn view_report(draws: &ViewDraws, casters: &FrameCasters<'_>) -> ViewReport {
-    let triangles: u64 = draws
-        .casters
-        .iter()
-        .map(|&index| u64::from(casters.facts(index).triangles))
-        .sum();
-    ViewReport {
-        triangles: triangles.saturating_sub(draws.copied_triangles),
-        layer: draws.view.layer(),
-        texels: draws.view.texels(),
-        status: match draws {
-            ViewDraws { deferred: true, .. } => ViewStatus::Deferred,
-            ViewDraws {
-                plan: Plan::Keep, ..
-            } => ViewStatus::Kept,
-            _ => ViewStatus::Drawn,
-        },
-        casters: draws.casters.len() as u32,
-        copied: draws.copied,
-        draws: draws.draw_calls(),
-        culled: (casters.len() - draws.casters.len()) as u32,
-        texel_size_world: draws.view.texel_size_world(),
-        depth_range_world: draws.view.depth_range_world(),
-        max_peter_panning_world: 0.0,
-        slice: None,
-    }
 }

@@ -2,6 +2,7 @@
 
 use glam::Vec2;
 
+use crate::cast::{FrameCasters, Plan, ViewDraws};
 use crate::report::{BrokenBounds, SliceReport, TexelRect};
 
 /// Tells how a view was brought up to date in a frame.
@@ -68,6 +69,35 @@ pub struct ViewReport {
 }
 
 impl ViewReport {
+    /// Describes a view with a map, apart from its slice and its peter-panning.
+    pub(crate) fn of(draws: &ViewDraws, casters: &FrameCasters<'_>) -> Self {
+        let triangles: u64 = draws
+            .casters
+            .iter()
+            .map(|&index| u64::from(casters.facts(index).triangles))
+            .sum();
+        Self {
+            triangles: triangles.saturating_sub(draws.copied_triangles),
+            layer: draws.view.layer(),
+            texels: draws.view.texels(),
+            status: match draws {
+                ViewDraws { deferred: true, .. } => ViewStatus::Deferred,
+                ViewDraws {
+                    plan: Plan::Keep, ..
+                } => ViewStatus::Kept,
+                _ => ViewStatus::Drawn,
+            },
+            casters: draws.casters.len() as u32,
+            copied: draws.copied,
+            draws: draws.draw_calls(),
+            culled: (casters.len() - draws.casters.len()) as u32,
+            texel_size_world: draws.view.texel_size_world(),
+            depth_range_world: draws.view.depth_range_world(),
+            max_peter_panning_world: 0.0,
+            slice: None,
+        }
+    }
+
     /// Returns the report of a view into which nothing casts.
     pub(crate) fn empty(layer: u32, culled: u32) -> Self {
         Self {

@@ -2,7 +2,7 @@
 //! where a device has no gather.
 
 use crate::error::DeviceRefusal;
-use crate::gpu::{capture_device_errors, fullscreen_pipeline};
+use crate::gpu::{FullscreenTarget, capture_device_errors, fullscreen_pipeline};
 use crate::shader;
 
 /// Tells how shaders read single texels of a map.
@@ -86,13 +86,12 @@ fn gathering_pipeline(device: &wgpu::Device) -> wgpu::RenderPipeline {
         label: Some(LABEL),
         source: wgpu::ShaderSource::Wgsl(source.into()),
     });
-    let target = wgpu::TextureFormat::Rgba8Unorm.into();
     fullscreen_pipeline(
         device,
         LABEL,
-        &layout,
+        Some(&layout),
         &module,
-        "shadow_probe_fragment",
-        target,
+        Some("shadow_probe_fragment"),
+        FullscreenTarget::Color(wgpu::TextureFormat::Rgba8Unorm.into()),
     )
 }

@@ -3,19 +3,19 @@
 
 use glam::{DVec3, UVec2};
 use shadow_support::camera::Camera;
-use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use shadow_support::random::Random;
 use wgpu_shadows::{
-    CascadeLayout, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter,
-    reference, report::ShadowReport, report::TexelRect, report::ViewStatus,
+    CascadeLayout, DepthFormat, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    Filter, reference, report::ShadowReport, report::TexelRect, report::ViewStatus,
 };
 
-use crate::fixtures::frames::{Coverage, DirectionalFrame, RecordFrame};
+use crate::fixtures::frames::{DirectionalFrame, RecordFrame};
 use crate::fixtures::gpu::{gpu, vulkan};
 use crate::fixtures::probe::{SunProbe, record};
 use crate::fixtures::scene::Scene;
-use crate::fixtures::texture_bytes::TextureBytes;
+use crate::fixtures::texture_bytes::{TextureBytes, texel_rows};
+use crate::fixtures::town::{town, town_frame, walker};
 
 const MAP_SIZE: u32 = 256;
 
@@ -30,40 +30,8 @@ fn sun(descriptor: &DirectionalShadowDescriptor<'_>) -> DirectionalShadow {
     DirectionalShadow::new(&gpu().device, descriptor).expect("a valid sun")
 }
 
-/// Returns houses along streets.
-fn town() -> Vec<Mesh> {
-    let mut random = Random::new(31);
-    let mut meshes = vec![Mesh::floor(0.0, 150.0)];
-    for index in 0..100 {
-        let cell = DVec3::new(f64::from(index % 10 - 5), 0.0, f64::from(index / 10 - 5)) * 26.0;
-        let low = cell + random.point(DVec3::new(3.0, 0.0, 3.0), DVec3::new(7.0, 0.0, 7.0));
-        let size = random.point(DVec3::new(7.0, 4.0, 7.0), DVec3::new(14.0, 22.0, 14.0));
-        meshes.push(Mesh::cuboid(low.as_vec3(), (low + size).as_vec3()));
-    }
-    meshes
-}
-
-/// Returns a camera that walks 1.5 units a second at 60 frames and turns by 20 degrees a second.
-fn walker(frame: u32) -> Camera {
-    let time = f64::from(frame) / 60.0;
-    let eye = DVec3::new(-20.0 + 1.5 * time, 1.7, 1.0);
-    let angle = (20.0 * time).to_radians();
-    let target = eye + DVec3::new(angle.cos(), -0.03, angle.sin());
-    Camera::modern(eye, target, 1.0, 16.0 / 9.0)
-}
-
-fn frame<'a>(
-    casters: &'a [&'a dyn wgpu_shadows::ShadowCaster],
-    camera: &Camera,
-) -> DirectionalFrame<'a> {
-    DirectionalFrame {
-        origin: DVec3::ZERO,
-        light: DirectionalLight::new(glam::Vec3::new(0.37, -1.0, 0.21)),
-        coverage: Coverage::Camera(camera.view().with_max_distance(120.0)),
-        casters,
-        receivers: &[],
-    }
-}
+/// Is the distance at which the shadows of the town end.
+const END: f32 = 120.0;
 
 /// Returns the rectangles of the views that have a map.
 fn rects(report: &ShadowReport) -> Vec<TexelRect> {
@@ -81,15 +49,15 @@ fn overlap(a: &TexelRect, b: &TexelRect) -> bool {
 /// same kind has the same layouts.
 #[test]
 fn layouts_of_a_walk_divide_the_layer_and_change_rarely() {
-    let scene = Scene::new(gpu(), &town());
+    let scene = Scene::new(gpu(), &town(31));
     let list = scene.list();
     let (mut first, mut second) = (sun(&AUTOMATIC), sun(&AUTOMATIC));
     let mut changes = 0;
     let mut before: Vec<TexelRect> = Vec::new();
     for index in 0..600 {
         let camera = walker(index);
-        let report = record(gpu(), &mut first, &frame(&list, &camera));
-        let other = record(gpu(), &mut second, &frame(&list, &camera));
+        let report = record(gpu(), &mut first, &town_frame(&list, &camera, END));
+        let other = record(gpu(), &mut second, &town_frame(&list, &camera, END));
         assert_eq!(report, other);
         assert_eq!(first.maps().view_uniforms(), second.maps().view_uniforms());
         let texels: Vec<_> = report.views.iter().map(|view| view.texels).collect();
@@ -121,7 +89,7 @@ fn layouts_of_a_walk_divide_the_layer_and_change_rarely() {
 #[test]
 fn kept_rectangles_are_what_would_be_drawn() {
     let gpu = vulkan();
-    let scene = Scene::new(gpu, &town());
+    let scene = Scene::new(gpu, &town(31));
     let list = scene.list();
     let sun = || DirectionalShadow::new(&gpu.device, &AUTOMATIC).expect("a valid sun");
     let (mut kept, mut fresh) = (sun(), sun());
@@ -152,7 +120,7 @@ fn kept_rectangles_are_what_would_be_drawn() {
         };
         let frame = DirectionalFrame {
             light: DirectionalLight::new(light),
-            ..frame(&list[..part], &camera)
+            ..town_frame(&list[..part], &camera, END)
         };
         let mut encoder = gpu.encoder();
         let report = kept.record_frame(&mut encoder, &frame);
@@ -173,15 +141,9 @@ fn kept_rectangles_are_what_would_be_drawn() {
             kept_views += u32::from(view.status == ViewStatus::Kept);
             let TexelRect { min, size } = view.texels;
             layouts.insert((report.views.len(), [min.x, min.y, size.x, size.y]));
-            for row in min.y..min.y + size.y {
-                let start = (row * MAP_SIZE + min.x) as usize * 4;
-                let texels = start..start + size.x as usize * 4;
-                assert!(
-                    now[0][texels.clone()] == wanted[0][texels],
-                    "frame {index}, row {row} of {:?}, {:?}",
-                    view.texels,
-                    view.status
-                );
+            for row in texel_rows(&view.texels, MAP_SIZE, DepthFormat::Float32) {
+                let same = now[0][row.clone()] == wanted[0][row];
+                assert!(same, "frame {index}, {view:?}");
             }
         }
     }
@@ -195,7 +157,7 @@ fn kept_rectangles_are_what_would_be_drawn() {
 #[test]
 fn lookups_read_the_rectangle_of_their_cascade() {
     let gpu = vulkan();
-    let scene = Scene::new(gpu, &town());
+    let scene = Scene::new(gpu, &town(31));
     let list = scene.list();
     for blend in [0.0, 0.2] {
         for filter in [Filter::Hardware, Filter::Tent3 { sharpness: 3.0 }] {
@@ -217,8 +179,8 @@ fn lookups_read_the_rectangle_of_their_cascade() {
             let probe = SunProbe::new(gpu, &shadow);
             let bytes = TextureBytes::new(gpu, shadow.maps().texture());
             let camera = walker(0);
-            record(gpu, &mut shadow, &frame(&list, &camera));
-            record(gpu, &mut fine, &frame(&list, &camera));
+            record(gpu, &mut shadow, &town_frame(&list, &camera, END));
+            record(gpu, &mut fine, &town_frame(&list, &camera, END));
             let mut encoder = gpu.encoder();
             bytes.copy(&mut encoder);
             gpu.submit(encoder);
@@ -280,7 +242,7 @@ fn lookups_read_the_rectangle_of_their_cascade() {
 /// Maps that are too small to be divided have one cascade, and nothing panics.
 #[test]
 fn small_maps_are_not_divided() {
-    let scene = Scene::new(gpu(), &town());
+    let scene = Scene::new(gpu(), &town(31));
     let list = scene.list();
     for map_size in [1, 2, 3, 17, 40] {
         let mut shadow = sun(&DirectionalShadowDescriptor {
@@ -289,7 +251,11 @@ fn small_maps_are_not_divided() {
             ..AUTOMATIC
         });
         for index in 0..3 {
-            let report = record(gpu(), &mut shadow, &frame(&list, &walker(index * 40)));
+            let report = record(
+                gpu(),
+                &mut shadow,
+                &town_frame(&list, &walker(index * 40), END),
+            );
             let whole = TexelRect {
                 min: UVec2::ZERO,
                 size: UVec2::splat(map_size),

@@ -54,6 +54,7 @@ mod omni;
 mod omni_input;
 mod omni_seams;
 
+mod out_of_memory;
 mod out_of_range;
 mod own_layout;
 mod pass_state;

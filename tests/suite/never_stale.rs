@@ -3,8 +3,6 @@
 //! backend, which copies no depth textures, layers of their own have no static-caster caches, and
 //! reading maps back is slow.
 
-use std::ops::Range;
-
 use glam::{DVec3, Mat4, Vec3};
 use shadow_support::camera::Camera;
 use shadow_support::mesh::Mesh;
@@ -13,13 +11,13 @@ use wgpu_shadows::{
     Aabb, CascadeLayout, CasterPipeline, DepthFormat, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor,
     ShadowCaster, ShadowView, caster::CasterPipelineDescriptor, report::ShadowReport,
-    report::TexelRect, report::ViewReport, report::ViewStatus,
+    report::ViewReport, report::ViewStatus,
 };
 
 use crate::fixtures::frames::{Coverage, DirectionalFrame, OmniFrame, RecordFrame};
 use crate::fixtures::gpu::{Gpu, vulkan};
 use crate::fixtures::multiview::{device, is_right};
-use crate::fixtures::texture_bytes::TextureBytes;
+use crate::fixtures::texture_bytes::{TextureBytes, texel_rows};
 
 /// Holds boxes of which some move, all move, or none does, for some frames each; some appear and
 /// disappear.
@@ -128,23 +126,6 @@ impl Ways {
         } = *self;
         assert!(kept.min(drawn).min(copied) >= least, "{self:?}");
     }
-}
-
-/// Returns the bytes of each row of a rectangle of texels in a layer of `map_size` texels a side.
-fn texel_rows(
-    texels: &TexelRect,
-    map_size: u32,
-    format: DepthFormat,
-) -> impl Iterator<Item = Range<usize>> {
-    let texel_bytes = match format {
-        DepthFormat::Unorm16 => 2,
-        _ => 4,
-    };
-    let TexelRect { min, size } = *texels;
-    (min.y..min.y + size.y).map(move |row| {
-        let start = (row * map_size + min.x) as usize * texel_bytes;
-        start..start + size.x as usize * texel_bytes
-    })
 }
 
 /// Records a frame of both lights, so that they have the same history, into an encoder that is

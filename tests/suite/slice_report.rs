@@ -14,6 +14,7 @@ use crate::fixtures::frames::{Coverage, DirectionalFrame};
 use crate::fixtures::gpu::gpu;
 use crate::fixtures::probe::record;
 use crate::fixtures::scene::Scene;
+use crate::fixtures::town::{TOWN_SUN, town};
 
 fn report(
     scene: &Scene,
@@ -94,14 +95,7 @@ fn a_picture_from_the_light_is_its_own_footprint() {
 #[test]
 fn fitted_maps_waste_less_than_half() {
     let mut random = Random::new(41);
-    let mut meshes = vec![Mesh::floor(0.0, 150.0)];
-    for index in 0..100 {
-        let cell = DVec3::new(f64::from(index % 10 - 5), 0.0, f64::from(index / 10 - 5)) * 26.0;
-        let low = cell + random.point(DVec3::new(3.0, 0.0, 3.0), DVec3::new(7.0, 0.0, 7.0));
-        let size = random.point(DVec3::new(7.0, 4.0, 7.0), DVec3::new(14.0, 22.0, 14.0));
-        meshes.push(Mesh::cuboid(low.as_vec3(), (low + size).as_vec3()));
-    }
-    let scene = Scene::new(gpu(), &meshes);
+    let scene = Scene::new(gpu(), &town(41));
     let mut shares = [0.0_f32; 2];
     let mut count = 0;
     for _ in 0..20 {
@@ -112,7 +106,7 @@ fn fitted_maps_waste_less_than_half() {
             report(
                 &scene,
                 &camera,
-                Vec3::new(0.37, -1.0, 0.21),
+                TOWN_SUN,
                 &DirectionalShadowDescriptor {
                     map_size: 256,
                     cascades: 4,

@@ -3,60 +3,21 @@
 
 use glam::DVec3;
 use shadow_support::camera::Camera;
-use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use shadow_support::random::Random;
 use wgpu_shadows::{
-    CascadeSplit, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, ShadowError,
-    Stability, reference,
+    CascadeSplit, DirectionalShadow, DirectionalShadowDescriptor, ShadowError, Stability, reference,
 };
 
-use crate::fixtures::frames::{Coverage, DirectionalFrame, RecordFrame};
+use crate::fixtures::frames::RecordFrame;
 use crate::fixtures::gpu::gpu;
 use crate::fixtures::probe::{SunProbe, record};
 use crate::fixtures::rounding::U;
 use crate::fixtures::scene::Scene;
-
-const LIGHT: DVec3 = DVec3::new(0.37, -1.0, 0.21);
+use crate::fixtures::town::{town, town_frame, walker};
 
 fn sun(descriptor: &DirectionalShadowDescriptor<'_>) -> DirectionalShadow {
     DirectionalShadow::new(&gpu().device, descriptor).expect("a valid sun")
-}
-
-/// Returns houses along streets.
-fn town() -> Scene {
-    let mut random = Random::new(31);
-    let mut meshes = vec![Mesh::floor(0.0, 150.0)];
-    for index in 0..100 {
-        let cell = DVec3::new(f64::from(index % 10 - 5), 0.0, f64::from(index / 10 - 5)) * 26.0;
-        let low = cell + random.point(DVec3::new(3.0, 0.0, 3.0), DVec3::new(7.0, 0.0, 7.0));
-        let size = random.point(DVec3::new(7.0, 4.0, 7.0), DVec3::new(14.0, 22.0, 14.0));
-        meshes.push(Mesh::cuboid(low.as_vec3(), (low + size).as_vec3()));
-    }
-    Scene::new(gpu(), &meshes)
-}
-
-/// Returns a camera that walks 1.5 units a second at 60 frames and turns by 20 degrees a second.
-fn walker(frame: u32) -> Camera {
-    let time = f64::from(frame) / 60.0;
-    let eye = DVec3::new(-20.0 + 1.5 * time, 1.7, 1.0);
-    let angle = (20.0 * time).to_radians();
-    let target = eye + DVec3::new(angle.cos(), -0.03, angle.sin());
-    Camera::modern(eye, target, 1.0, 16.0 / 9.0)
-}
-
-fn frame<'a>(
-    casters: &'a [&'a dyn wgpu_shadows::ShadowCaster],
-    camera: &Camera,
-    max_distance: f32,
-) -> DirectionalFrame<'a> {
-    DirectionalFrame {
-        origin: DVec3::ZERO,
-        light: DirectionalLight::new(LIGHT.as_vec3()),
-        coverage: Coverage::Camera(camera.view().with_max_distance(max_distance)),
-        casters,
-        receivers: &[],
-    }
 }
 
 /// Over 200 frames of the walk, a point of the floor that the same cascade covers with the same
@@ -67,7 +28,7 @@ fn frame<'a>(
 fn a_walk_changes_shadows_only_with_a_rung() {
     const FRAMES: u32 = 200;
     const MAP_SIZE: u32 = 512;
-    let scene = town();
+    let scene = Scene::new(gpu(), &town(31));
     let list = scene.list();
     let mut shadow = sun(&DirectionalShadowDescriptor {
         map_size: MAP_SIZE,
@@ -91,7 +52,7 @@ fn a_walk_changes_shadows_only_with_a_rung() {
     let (mut compared, mut changed, mut rescaled) = (0_u32, 0, 0_u32);
     for index in 0..FRAMES {
         let camera = walker(index);
-        let report = record(gpu(), &mut shadow, &frame(&list, &camera, 120.0));
+        let report = record(gpu(), &mut shadow, &town_frame(&list, &camera, 120.0));
         let sizes = [0, 1, 2, 3].map(|layer| report.views[layer].texel_size_world);
         let served: Vec<_> = places
             .iter()
@@ -132,7 +93,7 @@ fn a_walk_changes_shadows_only_with_a_rung() {
 /// bit, and what the camera sees in the slice is covered.
 #[test]
 fn no_motion_changes_a_spheres_texels() {
-    let scene = town();
+    let scene = Scene::new(gpu(), &town(31));
     let list = scene.list();
     let mut shadow = sun(&DirectionalShadowDescriptor {
         map_size: 256,
@@ -148,7 +109,7 @@ fn no_motion_changes_a_spheres_texels() {
         let mut way = random.direction();
         way.y = -0.3 * way.y.abs();
         let camera = Camera::modern(eye, eye + way, 1.0, 1.5);
-        let report = record(gpu(), &mut shadow, &frame(&list, &camera, 80.0));
+        let report = record(gpu(), &mut shadow, &town_frame(&list, &camera, 80.0));
         for (texel, view) in texels.iter_mut().zip(&report.views) {
             let now = view.texel_size_world;
             if now.x > 0.0 {
@@ -174,7 +135,7 @@ fn no_motion_changes_a_spheres_texels() {
 /// A sphere needs a finite end: a camera without a far plane must have a distance limit.
 #[test]
 fn a_sphere_around_an_endless_view_is_refused() {
-    let scene = town();
+    let scene = Scene::new(gpu(), &town(31));
     let list = scene.list();
     let mut shadow = sun(&DirectionalShadowDescriptor {
         map_size: 64,
@@ -182,7 +143,7 @@ fn a_sphere_around_an_endless_view_is_refused() {
         ..Default::default()
     });
     let mut encoder = gpu().encoder();
-    let endless = frame(&list, &walker(0), f32::INFINITY);
+    let endless = town_frame(&list, &walker(0), f32::INFINITY);
     let error = shadow
         .record_frame(&mut encoder, &endless)
         .expect_err("no end");
@@ -193,7 +154,7 @@ fn a_sphere_around_an_endless_view_is_refused() {
     );
     assert!(
         shadow
-            .record_frame(&mut encoder, &frame(&list, &walker(0), 50.0))
+            .record_frame(&mut encoder, &town_frame(&list, &walker(0), 50.0))
             .is_ok()
     );
 }
@@ -202,7 +163,7 @@ fn a_sphere_around_an_endless_view_is_refused() {
 /// it.
 #[test]
 fn explicit_splits_end_where_they_say() {
-    let scene = town();
+    let scene = Scene::new(gpu(), &town(31));
     let list = scene.list();
     let ends = &[15.0, 40.0];
     let mut shadow = sun(&DirectionalShadowDescriptor {
@@ -212,7 +173,7 @@ fn explicit_splits_end_where_they_say() {
         ..Default::default()
     });
     let camera = walker(0);
-    let report = record(gpu(), &mut shadow, &frame(&list, &camera, 80.0));
+    let report = record(gpu(), &mut shadow, &town_frame(&list, &camera, 80.0));
     let texels: Vec<_> = report
         .views
         .iter()
@@ -252,7 +213,7 @@ fn explicit_splits_end_where_they_say() {
         },
         ..Default::default()
     });
-    let report = record(gpu(), &mut shadow, &frame(&list, &camera, 80.0));
+    let report = record(gpu(), &mut shadow, &town_frame(&list, &camera, 80.0));
     let empty = |index: usize| report.views[index].texel_size_world.x == 0.0;
     assert!(empty(0) && empty(1) && !empty(2), "{report:?}");
     // Ends that do not grow or are not finite are refused.

@@ -4,14 +4,13 @@ use std::f64::consts::TAU;
 
 use glam::{DMat3, DVec3};
 use shadow_support::camera::Camera;
-use shadow_support::mesh::Mesh;
-use shadow_support::random::Random;
 use wgpu_shadows::{CascadeSplit, DirectionalShadowDescriptor, ShadowView};
 
 use super::stage::{Sun, boxes, differ, level, meshes, scene, shining, world};
 use super::table;
 use crate::fixtures::frames::Coverage;
 use crate::fixtures::rounding::U;
+use crate::fixtures::town::town;
 
 const LIGHT: DVec3 = DVec3::new(0.37, -1.0, 0.21);
 
@@ -127,19 +126,6 @@ fn a_trembling_origin_leaves_shadows_alone() {
     );
 }
 
-/// Returns a town of houses along streets.
-fn town() -> Vec<Mesh> {
-    let mut random = Random::new(29);
-    let mut meshes = vec![Mesh::floor(0.0, 150.0)];
-    for index in 0..100 {
-        let cell = DVec3::new(f64::from(index % 10 - 5), 0.0, f64::from(index / 10 - 5)) * 26.0;
-        let low = cell + random.point(DVec3::new(3.0, 0.0, 3.0), DVec3::new(7.0, 0.0, 7.0));
-        let size = random.point(DVec3::new(7.0, 4.0, 7.0), DVec3::new(14.0, 22.0, 14.0));
-        meshes.push(Mesh::cuboid(low.as_vec3(), (low + size).as_vec3()));
-    }
-    meshes
-}
-
 /// A camera walks (1.5 units a second at 60 frames) and turns (20 degrees a second) through a town.
 /// Light-space bounds that keep their texel size move by whole texels, which is invisible; those
 /// that take another size step are visible, and of the four cascades' bounds at most a twentieth do
@@ -147,7 +133,7 @@ fn town() -> Vec<Mesh> {
 #[test]
 fn windows_rarely_change_in_a_walk_through_a_town() {
     const FRAMES: u32 = 400;
-    let scene = scene(&town());
+    let scene = scene(&town(29));
     let mut sun = Sun::new(&DirectionalShadowDescriptor {
         map_size: 256,
         cascades: 4,
