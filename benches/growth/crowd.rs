@@ -14,16 +14,17 @@ pub struct Crowd {
     pub mesh: Mesh,
 }
 
-/// Is a caster that draws its part of shared buffers.
+/// Is a caster of an engine's own, which draws its part of shared buffers.
 pub struct BoxCaster {
-    pipeline: CasterPipeline,
-    vertices: wgpu::Buffer,
-    indices: wgpu::Buffer,
-    first_vertex: i32,
-    index_count: u32,
-    bounds: Aabb,
-    id: u64,
-    moves: bool,
+    pub pipeline: CasterPipeline,
+    pub vertices: wgpu::Buffer,
+    pub indices: wgpu::Buffer,
+    pub first_vertex: i32,
+    pub index_count: u32,
+    pub bounds: Aabb,
+    pub id: u64,
+    /// Counts its changes; `None` where it changes in every frame.
+    pub version: Option<u64>,
 }
 
 impl Crowd {
@@ -65,7 +66,7 @@ impl Crowd {
                 index_count: mesh.indices.len() as u32,
                 bounds: mesh.bounds(),
                 id,
-                moves: false,
+                version: Some(0),
             });
             first_vertex += mesh.positions.len() as i32;
         }
@@ -97,7 +98,7 @@ impl Crowd {
             away(a).total_cmp(&away(b))
         });
         for (rank, caster) in (0..).zip(&mut self.boxes) {
-            caster.moves = rank < count;
+            caster.version = (rank >= count).then_some(0);
         }
     }
 
@@ -136,10 +137,6 @@ impl ShadowCaster for BoxCaster {
     }
 
     fn revision(&self) -> Option<Revision> {
-        if self.moves {
-            None
-        } else {
-            Some(Revision::new(self.id, 0))
-        }
+        Some(Revision::new(self.id, self.version?))
     }
 }

@@ -10,11 +10,11 @@ use shadow_support::measure::statistics::Spread;
 use shadow_support::mesh::{Mesh, render_space_pipeline};
 use shadow_support::random::Random;
 use wgpu_shadows::{
-    Aabb, CameraView, CasterId, CasterPipeline, CasterSet, Casters, Coverage, Filter, Revision,
-    ShadowCaster, ShadowFrameDescriptor, ShadowView,
+    Aabb, CameraView, CasterId, CasterSet, Casters, Coverage, Filter, ShadowCaster,
+    ShadowFrameDescriptor,
 };
 
-use super::crowd;
+use super::crowd::{self, BoxCaster};
 use super::lamps::Lamps;
 use super::processor;
 use super::stage::Stage;
@@ -31,7 +31,7 @@ enum Motion {
     Nothing,
     /// Moves the camera by 0.1 m.
     Walk,
-    /// Moves so many of a thousand casters by up to 0.1 m, and tells the set.
+    /// Moves so many of a thousand casters by up to 0.1 m, and updates the set.
     PerMille(u32),
 }
 
@@ -42,87 +42,122 @@ const MOTIONS: [Motion; 4] = [
     Motion::PerMille(1000),
 ];
 
-/// Is a box that moves. All of them draw the same small mesh: encoding a draw costs the same, and a
-/// million meshes would need too much memory.
-pub struct Mover {
-    pipeline: CasterPipeline,
-    vertices: wgpu::Buffer,
-    indices: wgpu::Buffer,
-    index_count: u32,
-    bounds: Aabb,
-    velocity: Vec3,
-    id: u64,
-    version: u64,
+/// Holds boxes in a set, with four metres of ground each. All of them draw the same small mesh:
+/// encoding a draw costs the same, and a million meshes would need too much memory.
+struct Movers {
+    set: CasterSet<BoxCaster>,
+    ids: Vec<CasterId>,
+    /// Holds what each box moves by in a frame.
+    velocities: Vec<Vec3>,
 }
 
-impl Mover {
-    fn step(&mut self, frame: u32) {
-        // Each goes to and fro, so that the crowd stays a crowd.
+impl Movers {
+    fn new(gpu: &Gpu, count: u32) -> Self {
+        let half = crowd::half_side(count);
+        let mesh = Mesh::standing_box(Vec3::ZERO, Vec3::splat(0.5), 0.0);
+        let pipeline = render_space_pipeline(gpu);
+        let vertices = gpu.buffer(&mesh.positions, wgpu::BufferUsages::VERTEX);
+        let indices = gpu.buffer(&mesh.indices, wgpu::BufferUsages::INDEX);
+        let mut random = Random::new(31);
+        let mut velocities = Vec::new();
+        let mut set = CasterSet::new();
+        let ids = set.insert_all((0..count).map(|id| {
+            let mut between = |low, high| random.between(low, high);
+            let foot = Vec3::new(between(-half, half), 0.0, between(-half, half));
+            let size = Vec3::new(between(0.3, 1.0), between(0.3, 3.0), between(0.3, 1.0));
+            velocities.push(Vec3::new(between(-0.1, 0.1), 0.0, between(-0.1, 0.1)));
+            BoxCaster {
+                pipeline: pipeline.clone(),
+                vertices: vertices.clone(),
+                indices: indices.clone(),
+                first_vertex: 0,
+                index_count: mesh.indices.len() as u32,
+                bounds: Aabb::new(foot, foot + size),
+                id: u64::from(id),
+                version: Some(0),
+            }
+        }));
+        Self {
+            set,
+            ids,
+            velocities,
+        }
+    }
+
+    /// Moves casters, the same in each frame, and updates the set. Each goes to and fro, so that
+    /// the crowd stays a crowd.
+    fn step(&mut self, motion: Motion, frame: u32) {
+        let Motion::PerMille(share) = motion else {
+            return;
+        };
         let way = if (frame / 40).is_multiple_of(2) {
             1.0
         } else {
             -1.0
         };
-        self.bounds.min += self.velocity * way;
-        self.bounds.max += self.velocity * way;
-        self.version += 1;
-    }
-}
-
-impl ShadowCaster for Mover {
-    fn bounds(&self) -> Aabb {
-        self.bounds
-    }
-
-    fn pipeline(&self) -> &CasterPipeline {
-        &self.pipeline
-    }
-
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, _: &ShadowView) {
-        pass.set_vertex_buffer(0, self.vertices.slice(..));
-        pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
-        pass.draw_indexed(0..self.index_count, 0, 0..1);
-    }
-
-    fn keeps_pass_state(&self) -> bool {
-        true
-    }
-
-    fn triangles(&self) -> u32 {
-        self.index_count / 3
-    }
-
-    fn revision(&self) -> Option<Revision> {
-        Some(Revision::new(self.id, self.version))
-    }
-}
-
-/// Makes `count` boxes with four metres of ground each.
-fn movers(gpu: &Gpu, count: u32) -> (CasterSet<Mover>, Vec<CasterId>) {
-    let half = crowd::half_side(count);
-    let mesh = Mesh::standing_box(Vec3::ZERO, Vec3::splat(0.5), 0.0);
-    let pipeline = render_space_pipeline(gpu);
-    let vertices = gpu.buffer(&mesh.positions, wgpu::BufferUsages::VERTEX);
-    let indices = gpu.buffer(&mesh.indices, wgpu::BufferUsages::INDEX);
-    let mut random = Random::new(31);
-    let mut set = CasterSet::new();
-    let ids = set.insert_all((0..count).map(|id| {
-        let mut between = |low, high| random.between(low, high);
-        let foot = Vec3::new(between(-half, half), 0.0, between(-half, half));
-        let size = Vec3::new(between(0.3, 1.0), between(0.3, 3.0), between(0.3, 1.0));
-        let velocity = Vec3::new(between(-0.1, 0.1), 0.0, between(-0.1, 0.1));
-        Mover {
-            pipeline: pipeline.clone(),
-            vertices: vertices.clone(),
-            indices: indices.clone(),
-            index_count: mesh.indices.len() as u32,
-            bounds: Aabb::new(foot, foot + size),
-            velocity,
-            id: u64::from(id),
-            version: 0,
+        let all = self.ids.iter().zip(&self.velocities);
+        for (&id, velocity) in all.step_by((1000 / share) as usize) {
+            let moved = self.set.update(id, |caster| {
+                caster.bounds.min += velocity * way;
+                caster.bounds.max += velocity * way;
+                caster.version = caster.version.map(|version| version + 1);
+            });
+            moved.expect("a caster of the set");
         }
-    }));
-    (set, ids)
+    }
+
+    /// Returns the same casters as a list.
+    fn list(&self) -> Vec<&dyn ShadowCaster> {
+        let members = self.ids.iter().filter_map(|id| self.set.get(*id));
+        members.map(|member| member as _).collect()
+    }
+
+    /// Measures frames of a motion: with the set, and in turn with a list if there is one. `record`
+    /// records a frame of the set (0) or of the list (1) and returns its passes and draw calls.
+    /// Returns a row of the table.
+    fn measure(
+        &mut self,
+        stage: &Stage<'_>,
+        motion: Motion,
+        with_list: bool,
+        mut record: impl FnMut(usize, &mut wgpu::CommandEncoder, Casters<'_>, u32) -> (u32, u32),
+    ) -> [f64; 6] {
+        let mut times: [Vec<processor::Effort>; 2] = Default::default();
+        let mut updates = Vec::new();
+        let mut counts = (0, 0);
+        for frame in 0..SETTLING + stage.repeats {
+            let effort = processor::measure(
+                1,
+                || stage.gpu.encoder(),
+                |encoder| {
+                    let start = Instant::now();
+                    self.step(motion, frame);
+                    updates.push(start.elapsed().as_secs_f64() * 1e6);
+                    counts = record(0, encoder, Casters::Set(&self.set), frame);
+                },
+            );
+            let list = if with_list { self.list() } else { Vec::new() };
+            let list_effort = with_list.then(|| {
+                let record = |encoder: &mut wgpu::CommandEncoder| {
+                    record(1, encoder, Casters::List(&list), frame)
+                };
+                processor::measure(1, || stage.gpu.encoder(), record)
+            });
+            if frame >= SETTLING {
+                times[0].push(effort);
+                times[1].extend(list_effort);
+            }
+        }
+        let [set, list] = times.map(|times| processor::median(&times));
+        [
+            set.microseconds,
+            Spread::of(updates[SETTLING as usize..].iter().copied()).median,
+            set.allocations,
+            f64::from(counts.0),
+            f64::from(counts.1),
+            list.microseconds,
+        ]
+    }
 }
 
 /// Measures `frame` and `record` of a sun with four cascades and of many lamps, update of the set
@@ -165,68 +200,28 @@ fn suns(stage: &Stage<'_>, count: u32) {
          beside them, in turn, the same with a list",
     ));
     for motion in MOTIONS {
-        let (mut set, ids) = movers(stage.gpu, count);
+        let mut movers = Movers::new(stage.gpu, count);
         let mut suns = [(); 2].map(|()| stage.sun(1024, 4, Filter::default()));
-        let [of_set, of_list] = &mut suns;
-        let mut frame = 0;
-        let mut times: [Vec<processor::Effort>; 2] = Default::default();
-        let mut updates = Vec::new();
         // A list of a million casters takes long.
         let with_list = count <= 100_000;
-        let mut counts = (0, 0);
-        for round in 0..SETTLING + stage.repeats {
-            frame += 1;
-            let walked = if motion == Motion::Walk {
-                0.1 * frame as f32
-            } else {
-                0.0
-            };
-            let eye = Vec3::new(walked, 2.0, 0.0);
-            let camera = camera::looking(eye, eye + Vec3::new(9.0, -1.0, 5.0), 0.9);
-            let cameras = [camera.with_max_distance(60.0)];
-            let mut encoder = Some(stage.gpu.encoder());
-            let effort = processor::measure(
-                1,
-                || encoder.take().expect("one call"),
-                |encoder| {
-                    let start = Instant::now();
-                    step(&mut set, &ids, motion, frame);
-                    updates.push(start.elapsed().as_secs_f64() * 1e6);
-                    let report = of_set.record(encoder, &frame_of(&cameras, Casters::Set(&set)));
-                    counts = (report.passes, report.draws());
-                },
-            );
-            let list_effort = with_list.then(|| {
-                let members: Vec<&Mover> = ids.iter().filter_map(|id| set.get(*id)).collect();
-                let list: Vec<&dyn ShadowCaster> = members.iter().map(|m| *m as _).collect();
-                let record = |encoder: &mut wgpu::CommandEncoder| {
-                    of_list
-                        .record(encoder, &frame_of(&cameras, Casters::List(&list)))
-                        .passes
+        let row = movers.measure(
+            stage,
+            motion,
+            with_list,
+            |which, encoder, casters, frame| {
+                let walked = if motion == Motion::Walk {
+                    0.1 * frame as f32
+                } else {
+                    0.0
                 };
-                processor::measure(1, || stage.gpu.encoder(), record)
-            });
-            if round >= SETTLING {
-                times[0].push(effort);
-                times[1].extend(list_effort);
-            }
-        }
-        let [set_times, list_times] = times;
-        let (effort, list) = (
-            processor::median(&set_times),
-            processor::median(&list_times),
+                let eye = Vec3::new(walked, 2.0, 0.0);
+                let camera = camera::looking(eye, eye + Vec3::new(9.0, -1.0, 5.0), 0.9);
+                let cameras = [camera.with_max_distance(60.0)];
+                let report = suns[which].record(encoder, &frame_of(&cameras, casters));
+                (report.passes, report.draws())
+            },
         );
-        table.add(
-            per_mille(motion),
-            [
-                effort.microseconds,
-                Spread::of(updates[SETTLING as usize..].iter().copied()).median,
-                effort.allocations,
-                f64::from(counts.0),
-                f64::from(counts.1),
-                list.microseconds,
-            ],
-        );
+        table.add(per_mille(motion), row);
     }
     table.print();
 }
@@ -240,51 +235,13 @@ fn lamps(stage: &Stage<'_>) {
         if motion == Motion::Walk {
             continue;
         }
-        let (mut set, ids) = movers(stage.gpu, CASTERS_OF_LAMPS);
-        let mut of_set = Lamps::new(stage.gpu, LAMPS);
-        let mut of_list = Lamps::new(stage.gpu, LAMPS);
-        let mut times: [Vec<processor::Effort>; 2] = Default::default();
-        let mut updates = Vec::new();
-        let mut counts = super::counts::Counts::default();
-        for round in 0..SETTLING + stage.repeats {
-            let effort = processor::measure(
-                1,
-                || stage.gpu.encoder(),
-                |encoder| {
-                    let start = Instant::now();
-                    step(&mut set, &ids, motion, round);
-                    updates.push(start.elapsed().as_secs_f64() * 1e6);
-                    counts = of_set.record(encoder, Casters::Set(&set), half);
-                },
-            );
-            let members: Vec<&Mover> = ids.iter().filter_map(|id| set.get(*id)).collect();
-            let list: Vec<&dyn ShadowCaster> = members.iter().map(|m| *m as _).collect();
-            let list_effort = processor::measure(
-                1,
-                || stage.gpu.encoder(),
-                |encoder| of_list.record(encoder, Casters::List(&list), half),
-            );
-            if round >= SETTLING {
-                times[0].push(effort);
-                times[1].push(list_effort);
-            }
-        }
-        let [set_times, list_times] = times;
-        let (effort, list) = (
-            processor::median(&set_times),
-            processor::median(&list_times),
-        );
-        table.add(
-            per_mille(motion),
-            [
-                effort.microseconds,
-                Spread::of(updates[SETTLING as usize..].iter().copied()).median,
-                effort.allocations,
-                f64::from(counts.passes),
-                f64::from(counts.draws),
-                list.microseconds,
-            ],
-        );
+        let mut movers = Movers::new(stage.gpu, CASTERS_OF_LAMPS);
+        let mut lamps = [(); 2].map(|()| Lamps::new(stage.gpu, LAMPS));
+        let row = movers.measure(stage, motion, true, |which, encoder, casters, _| {
+            let counts = lamps[which].record(encoder, casters, half);
+            (counts.passes, counts.draws)
+        });
+        table.add(per_mille(motion), row);
     }
     table.print();
 }
@@ -299,17 +256,5 @@ fn frame_of<'d, 'c>(
         coverage: Coverage::Cameras(cameras),
         casters,
         receivers: &[],
-    }
-}
-
-/// Moves the casters of a frame, the same in each, and tells the set.
-fn step(set: &mut CasterSet<Mover>, ids: &[CasterId], motion: Motion, frame: u32) {
-    let Motion::PerMille(share) = motion else {
-        return;
-    };
-    let stride = (1000 / share) as usize;
-    for &id in ids.iter().step_by(stride) {
-        set.update(id, |mover| mover.step(frame))
-            .expect("a caster of the set");
     }
 }

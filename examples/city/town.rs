@@ -1,14 +1,9 @@
 //! Holds the town on the device: everything in one instance buffer.
 
-use example_support::mesh::{Instance, Mesh, Vertex, cube, sphere, vertex_buffer};
+use example_support::mesh::{Instance, Mesh, copies_pipeline, cube, sphere, vertex_buffer};
 use example_support::phong::Batch;
 use example_support::town::Plan;
-use glam::Mat4;
-use wgpu_shadows::{
-    Aabb, CasterPipeline, InstancedMeshCaster, caster::CasterPipelineDescriptor,
-    caster::CasterVertex, caster::InstancedMeshCasterDescriptor, caster::MeshIndices,
-    caster::ModelTransform, caster::PositionAttribute, error::CasterError,
-};
+use wgpu_shadows::{Aabb, DepthFormat, InstancedMeshCaster, error::CasterError};
 
 /// Is the number of blocks along each side of the town.
 const BLOCKS: i32 = 18;
@@ -38,10 +33,10 @@ impl Town {
         } = Plan::new(BLOCKS);
         let box_mesh = Mesh::new(device, &cube());
         let dome_mesh = Mesh::new(device, &sphere(24));
-        let pipeline = caster_pipeline(device)?;
+        let pipeline = copies_pipeline(device, &[DepthFormat::Float32])?;
         let casters = [
-            copies(device, &pipeline, &box_mesh, &houses)?,
-            copies(device, &pipeline, &dome_mesh, &domes)?,
+            box_mesh.copies(device, &pipeline, &houses)?,
+            dome_mesh.copies(device, &pipeline, &domes)?,
         ];
         let first_dome = (ground.len() + houses.len()) as u32;
         let instances: Vec<Instance> = ground.into_iter().chain(houses).chain(domes).collect();
@@ -68,40 +63,4 @@ impl Town {
             batch(&self.dome_mesh, self.first_dome..self.instance_count),
         ]
     }
-}
-
-/// Makes one caster of many buildings, each of which is culled by itself.
-fn copies(
-    device: &wgpu::Device,
-    pipeline: &CasterPipeline,
-    mesh: &Mesh,
-    instances: &[Instance],
-) -> Result<InstancedMeshCaster, CasterError> {
-    let transforms = instances.iter().map(|instance| instance.render_from_model);
-    let transforms: Vec<Mat4> = transforms.collect();
-    let descriptor = InstancedMeshCasterDescriptor {
-        label: Some("buildings"),
-        pipeline,
-        vertices: &mesh.vertices,
-        indices: MeshIndices::None {
-            vertices: 0..mesh.vertex_count,
-        },
-        bounds_model: mesh.bounds_model,
-        render_from_model: &transforms,
-    };
-    InstancedMeshCaster::new(device, &descriptor)
-}
-
-fn caster_pipeline(device: &wgpu::Device) -> Result<CasterPipeline, CasterError> {
-    CasterPipeline::new(
-        device,
-        &CasterPipelineDescriptor {
-            label: Some("building"),
-            vertex: CasterVertex::BuiltIn {
-                position: PositionAttribute::float32x3(size_of::<Vertex>() as u64),
-                model: ModelTransform::INSTANCE_MATRIX,
-            },
-            ..Default::default()
-        },
-    )
 }

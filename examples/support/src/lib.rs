@@ -8,7 +8,6 @@
 //! phong.rs        the pass that draws them; phong.wgsl: its vertex stage and Blinn-Phong
 //! picture.rs      PNG files
 //! map_picture.rs  a shadow map as an image
-//! instance_caster.rs  one of many instances as a caster
 //! textbook.rs     the scene of the classic tutorial
 //! town/           a town of some thousand buildings
 //! hall/           a hall with a sun, spots and lamps
@@ -21,7 +20,6 @@ pub mod arguments;
 pub mod camera;
 pub mod gltf_file;
 pub mod hall;
-pub mod instance_caster;
 pub mod map_picture;
 pub mod mesh;
 pub mod phong;

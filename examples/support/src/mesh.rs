@@ -7,8 +7,10 @@ use bytemuck::{NoUninit, Pod, Zeroable};
 use glam::{Mat4, Vec3};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu_shadows::{
-    Aabb, CasterPipeline, MeshCaster, caster::MeshCasterDescriptor, caster::MeshIndices,
-    error::CasterError,
+    Aabb, CasterPipeline, DepthFormat, InstancedMeshCaster, MeshCaster,
+    caster::CasterPipelineDescriptor, caster::CasterVertex, caster::InstancedMeshCasterDescriptor,
+    caster::MeshCasterDescriptor, caster::MeshIndices, caster::ModelTransform,
+    caster::PositionAttribute, error::CasterError,
 };
 
 /// Is a vertex; the library reads its position, and the engine's shader reads its normal as well.
@@ -44,6 +46,54 @@ impl Mesh {
             bounds_model: Aabb::from_points(vertices.iter().map(|vertex| vertex.position)),
         }
     }
+
+    /// Returns copies of the mesh as the library draws them, each of which is culled by itself.
+    /// `pipeline` is that of [`copies_pipeline`].
+    pub fn copies(
+        &self,
+        device: &wgpu::Device,
+        pipeline: &CasterPipeline,
+        instances: &[Instance],
+    ) -> Result<InstancedMeshCaster, CasterError> {
+        InstancedMeshCaster::new(
+            device,
+            &InstancedMeshCasterDescriptor {
+                label: Some("copies"),
+                pipeline,
+                vertices: &self.vertices,
+                indices: MeshIndices::None {
+                    vertices: 0..self.vertex_count,
+                },
+                bounds_model: self.bounds_model,
+                render_from_model: &transforms(instances),
+            },
+        )
+    }
+}
+
+/// Returns the transforms of instances.
+pub fn transforms(instances: &[Instance]) -> Vec<Mat4> {
+    let transforms = instances.iter().map(|instance| instance.render_from_model);
+    transforms.collect()
+}
+
+/// Makes a pipeline for casters of [`Vertex`] with a matrix each, for maps of these formats.
+pub fn copies_pipeline(
+    device: &wgpu::Device,
+    depth_formats: &[DepthFormat],
+) -> Result<CasterPipeline, CasterError> {
+    CasterPipeline::new(
+        device,
+        &CasterPipelineDescriptor {
+            label: Some("copies"),
+            vertex: CasterVertex::BuiltIn {
+                position: PositionAttribute::float32x3(size_of::<Vertex>() as u64),
+                model: ModelTransform::INSTANCE_MATRIX,
+            },
+            depth_formats,
+            ..Default::default()
+        },
+    )
 }
 
 /// Is a mesh with its position.

@@ -146,7 +146,9 @@ impl Engine {
         }
         self.make_sides(state);
         if self.drawn.as_ref().map(|drawn| drawn.time) != Some(state.time) {
-            self.stage.set_time(&self.gpu.queue, state.time);
+            if let Err(error) = self.stage.set_time(&self.gpu.queue, state.time) {
+                state.tell(error.to_string());
+            }
         }
         if let Err(error) = self.draw_picture(state) {
             state.tell(error);

@@ -1,14 +1,13 @@
 //! Holds a scene on the device: meshes, instances and casters.
 
 use bytemuck::cast_slice;
-use example_support::instance_caster::{self, InstanceCaster};
-use example_support::mesh::{Instance, Mesh};
+use example_support::mesh::{Instance, Mesh, copies_pipeline, transforms};
 use example_support::phong::Batch;
 use glam::Vec3;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu_shadows::{
-    Aabb, CasterPipeline, DepthFormat, ShadowCaster, caster::CasterShape, caster::caster_shape,
-    error::CasterError,
+    Aabb, CasterPipeline, DepthFormat, InstancedMeshCaster, ShadowCaster, caster::CasterShape,
+    caster::caster_shape, error::CasterError,
 };
 
 use crate::scene::{Model, Role, Scene};
@@ -25,20 +24,19 @@ struct DrawnModel {
     mesh: Mesh,
     instances: wgpu::Buffer,
     count: u32,
-    casters: Vec<InstanceCaster>,
+    /// Holds the copies that cast, if the model does.
+    caster: Option<InstancedMeshCaster>,
     path: Option<fn(f32) -> Vec<Instance>>,
 }
 
 impl Stage {
     pub fn new(device: &wgpu::Device, scene: &Scene) -> Result<Self, CasterError> {
         let formats = [DepthFormat::Float32, DepthFormat::Unorm16];
-        let pipeline = instance_caster::pipeline(device, "viewer caster", &formats)?;
-        let mut next_id = 0;
+        let pipeline = copies_pipeline(device, &formats)?;
         let models = scene.models.iter();
+        let models = models.map(|model| DrawnModel::new(device, model, &pipeline));
         Ok(Self {
-            models: models
-                .map(|model| DrawnModel::new(device, model, &pipeline, &mut next_id))
-                .collect(),
+            models: models.collect::<Result<_, _>>()?,
             receivers: scene
                 .models
                 .iter()
@@ -50,19 +48,23 @@ impl Stage {
     }
 
     /// Puts what moves where it is at a time in seconds.
-    pub fn set_time(&mut self, queue: &wgpu::Queue, time: f32) {
+    ///
+    /// # Errors
+    /// Returns an error for a model with more instances at one time than at another.
+    pub fn set_time(&mut self, queue: &wgpu::Queue, time: f32) -> Result<(), CasterError> {
         for model in &mut self.models {
             let Some(path) = model.path else { continue };
             let instances = path(time);
             queue.write_buffer(&model.instances, 0, cast_slice(&instances));
-            for (caster, instance) in model.casters.iter_mut().zip(&instances) {
-                caster.set_instance(instance);
+            if let Some(caster) = &mut model.caster {
+                caster.set_transforms(0, &transforms(&instances))?;
             }
         }
+        Ok(())
     }
 
     pub fn casters(&self) -> Vec<&dyn ShadowCaster> {
-        let casters = self.models.iter().flat_map(|model| &model.casters);
+        let casters = self.models.iter().filter_map(|model| model.caster.as_ref());
         casters.map(|caster| caster as _).collect()
     }
 
@@ -88,29 +90,26 @@ impl DrawnModel {
         device: &wgpu::Device,
         model: &Model,
         pipeline: &CasterPipeline,
-        next_id: &mut u64,
-    ) -> Self {
+    ) -> Result<Self, CasterError> {
         let mesh = Mesh::new(device, &model.vertices);
-        let instances = device.create_buffer_init(&BufferInitDescriptor {
-            label: Some("instances"),
-            contents: cast_slice(&model.instances),
-            usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
-        });
-        let shape = shape(model);
-        let casts = model.role == Role::Solid;
-        let casters = (0..).zip(model.instances.iter().filter(|_| casts));
-        let casters = casters.map(|(index, instance)| {
-            *next_id += 1;
-            InstanceCaster::new(&mesh, &instances, index, instance, pipeline)
-                .with_id_and_shape(*next_id, shape, instance)
-        });
-        Self {
-            casters: casters.collect(),
+        let caster = if model.role == Role::Solid {
+            let mut caster = mesh.copies(device, pipeline, &model.instances)?;
+            caster.set_shape(shape(model));
+            Some(caster)
+        } else {
+            None
+        };
+        Ok(Self {
+            caster,
             count: model.instances.len() as u32,
+            instances: device.create_buffer_init(&BufferInitDescriptor {
+                label: Some("instances"),
+                contents: cast_slice(&model.instances),
+                usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+            }),
             mesh,
-            instances,
             path: model.path,
-        }
+        })
     }
 }
 

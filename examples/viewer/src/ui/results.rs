@@ -35,9 +35,11 @@ fn cost(ui: &mut Ui, engine: &Engine) {
             row("passes", "Depth passes of the last frame", |cost| {
                 cost.passes.to_string()
             });
-            row("draws", "Casters drawn in those passes", |cost| {
-                cost.draws.to_string()
-            });
+            row(
+                "draws",
+                "Draw calls in those passes: one for all copies of a mesh in a map",
+                |cost| cost.draws.to_string(),
+            );
             row("triangles", "Triangles drawn in those passes", |cost| {
                 count(cost.triangles)
             });
