@@ -21,16 +21,16 @@ pub(crate) fn fullscreen_pipeline(
     fragment_entry: Option<&str>,
     target: FullscreenTarget,
 ) -> wgpu::RenderPipeline {
-    let layouts: &[_] = &[layout];
+    let layouts: Vec<_> = layout.into_iter().map(Some).collect();
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(label),
-        bind_group_layouts: if layout.is_some() { layouts } else { &[] },
+        bind_group_layouts: &layouts,
         immediate_size: 0,
     });
-    let (color, depth_stencil) = match target {
-        FullscreenTarget::Color(target) => (Some(target), None),
+    let (targets, depth_stencil) = match target {
+        FullscreenTarget::Color(target) => (vec![Some(target)], None),
         FullscreenTarget::Depth(format) => (
-            None,
+            Vec::new(),
             Some(wgpu::DepthStencilState {
                 format,
                 depth_write_enabled: Some(true),
@@ -40,7 +40,6 @@ pub(crate) fn fullscreen_pipeline(
             }),
         ),
     };
-    let targets: &[_] = &[color.clone()];
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(label),
         layout: Some(&layout),
@@ -57,7 +56,7 @@ pub(crate) fn fullscreen_pipeline(
             module,
             entry_point: Some(entry),
             compilation_options: Default::default(),
-            targets: if color.is_some() { targets } else { &[] },
+            targets: &targets,
         }),
         multiview_mask: None,
         cache: None,
