@@ -13,9 +13,9 @@ use wgpu_shadows::{
     caster::PositionAttribute, report::ShadowReport, report::ViewStatus,
 };
 
-use crate::fixtures::copies::{Alone, Shared, list, reflected, scattered};
+use crate::fixtures::copies::{Alone, Shared, list, reflected, scattered, small_buffers};
 use crate::fixtures::frames::{Coverage, DirectionalFrame, OmniFrame, RecordFrame};
-use crate::fixtures::gpu::{Gpu, GpuRequest, gpu, own_gpu};
+use crate::fixtures::gpu::{Gpu, gpu};
 use crate::fixtures::multiview::{device, is_right, portable};
 use crate::fixtures::scene::default_pipeline;
 
@@ -288,15 +288,7 @@ fn copies_in_six_faces_at_once() {
 #[test]
 fn matrices_beyond_the_largest_buffer() {
     // A buffer holds 256 matrices, and the map is read back in one of this size.
-    let small = own_gpu(GpuRequest {
-        limits: wgpu::Limits {
-            max_buffer_size: 16_384,
-            max_uniform_buffer_binding_size: 16_384,
-            max_storage_buffer_binding_size: 16_384,
-            ..Default::default()
-        },
-        ..Default::default()
-    });
+    let small = small_buffers();
     let transforms = scattered(&mut Random::new(7), 250, 12.0);
     let cube = Mesh::cuboid(Vec3::splat(-0.5), Vec3::splat(0.5));
     let rod = Mesh::rod(Vec3::NEG_Y, Vec3::Y, 0.2, 5);

@@ -11,9 +11,9 @@ use wgpu_shadows::{
     report::ViewStatus,
 };
 
-use crate::fixtures::copies::{Alone, Shared, scattered};
+use crate::fixtures::copies::{Alone, Shared, scattered, small_buffers};
 use crate::fixtures::frames::{Coverage, DirectionalFrame, RecordFrame};
-use crate::fixtures::gpu::{Gpu, GpuRequest, gpu, own_gpu, two_gpus, vulkan};
+use crate::fixtures::gpu::{Gpu, gpu, two_gpus, vulkan};
 use crate::fixtures::probe::record;
 use crate::fixtures::scene::default_pipeline;
 use crate::fixtures::slabs::{assert_same, frame, fresh_map};
@@ -150,14 +150,8 @@ fn kept_maps_of_copies_are_what_would_be_drawn() {
         fresh_bytes.copy(&mut encoder);
         gpu.submit(encoder);
         let (now, wanted) = (kept_bytes.read(gpu), fresh_bytes.read(gpu));
-        for view in &report.views {
-            let layer = view.layer as usize;
-            let drawn = view.status == ViewStatus::Drawn;
-            assert!(
-                !drawn || now[layer] == wanted[layer],
-                "frame {frame_index}, layer {layer}"
-            );
-        }
+        let what = || format!("frame {frame_index}");
+        kept_bytes.assert_same_views(&report, [&now, &wanted], what);
     }
     assert!(
         kept_views > 40 && copied_views > 40,
@@ -247,15 +241,7 @@ fn copies_move_between_two_frames_of_one_submission() {
 /// Each refusal names its field, and changes nothing.
 #[test]
 fn what_copies_refuse() {
-    let small = own_gpu(GpuRequest {
-        limits: wgpu::Limits {
-            max_buffer_size: 16_384,
-            max_uniform_buffer_binding_size: 16_384,
-            max_storage_buffer_binding_size: 16_384,
-            ..Default::default()
-        },
-        ..Default::default()
-    });
+    let small = small_buffers();
     let pipeline = default_pipeline(&small);
     let shared = cube(&small);
     let create = |pipeline: &CasterPipeline, count| {

@@ -145,10 +145,10 @@ impl Engine {
             return;
         }
         self.make_sides(state);
-        if self.drawn.as_ref().map(|drawn| drawn.time) != Some(state.time) {
-            if let Err(error) = self.stage.set_time(&self.gpu.queue, state.time) {
-                state.tell(error.to_string());
-            }
+        if self.drawn.as_ref().map(|drawn| drawn.time) != Some(state.time)
+            && let Err(error) = self.stage.set_time(&self.gpu.queue, state.time)
+        {
+            state.tell(error.to_string());
         }
         if let Err(error) = self.draw_picture(state) {
             state.tell(error);
