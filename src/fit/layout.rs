@@ -5,13 +5,17 @@ use crate::fit::layout_choice::{Layout, Prediction};
 /// Is the number of frames from one prediction to the next.
 const FRAMES_BETWEEN_PREDICTIONS: u32 = 16;
 
-/// Is the factor by which the cost of another layout must be lower for a change.
+/// Is the factor by which the cost of another layout must be lower for a change. The error goes
+/// with the number of texels to the power of -1/4, so that the change is worth 1.9 times the
+/// texels.
 const BETTER: f64 = 0.85;
 
-/// Is the number of predictions in a row for which another layout must be better.
+/// Is the number of predictions in a row for which another layout must be better: 128 frames,
+/// about as long as extents are held that are larger than needed.
 const PREDICTIONS_FOR_CHANGE: u32 = 8;
 
-/// Is the factor by which the cost of another layout must be lower for a change at once.
+/// Is the factor by which the cost of another layout must be lower for a change at once: it is then
+/// worth sixteen times the texels, as after a cut of the camera.
 const MUCH_BETTER: f64 = 0.5;
 
 /// Holds a layout from frame to frame.
