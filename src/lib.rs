@@ -70,7 +70,7 @@
 //! ShadowView[]     one depth render each: matrices, texel size, depth range
 //!    │  cast       decides what is kept, copied or drawn, and records the depth passes
 //!    ▼
-//! depth texture    layers: cascades of a sun, the map of a spot light, six faces of a point light
+//! depth texture    the cascades of a sun, the map of a spot light, six faces of a point light
 //!    │  receive    bind group and WGSL: your fragment shader calls shadow_NAME(position, normal)
 //!    ▼
 //! your image       and a ShadowReport
@@ -94,12 +94,11 @@
 //! | many spot or point lights, which come and go | [`pool::SpotShadowPool`], [`pool::OmniShadowPool`] | one or six for each slot, with a budget of views per frame |
 //!
 //! All lights of a frame are recorded with the same [`ShadowFrame`]. A sun over a scene as deep as
-//! it is wide needs one cascade; a view to the horizon needs three or four
-//! ([`DirectionalShadowDescriptor::cascades`], [`CascadeSplit`]), and under
-//! [`CascadeLayout::Automatic`] the library finds how many, where they end, and how many texels
-//! each gets. [`DirectionalShadowDescriptor::blend`] hides where one ends. [`ShadowMaps::report`]
-//! tells how fine the maps of the last frame are and what was drawn; [`debug::DebugView`] draws the
-//! maps.
+//! it is wide needs one cascade; a view to the horizon needs three or four. By default the library
+//! finds how many, where they end, and how many texels of one map each gets; an engine that knows
+//! better gives them ([`CascadeLayout`]). [`DirectionalShadowDescriptor::blend`] hides where one
+//! ends. [`ShadowMaps::report`] tells how fine the maps of the last frame are, how large an error
+//! is expected, and what was drawn; [`debug::DebugView`] draws the maps.
 //!
 //! # A list of casters or a set
 //!
@@ -175,7 +174,7 @@
 //!
 //! [`troubleshooting`] tells what faults look like, what causes them and what to do. [`hard_cases`]
 //! lists scenes and inputs that break shadow maps, with what the crate promises for each and what
-//! was measured.
+//! was measured. [`glossary`] explains the terms of the field, with formulas and sources.
 //!
 //! # Own bind groups
 //!
@@ -321,6 +320,10 @@ pub mod hard_cases {}
 #[cfg(doc)]
 #[doc = include_str!("../doc/troubleshooting.md")]
 pub mod troubleshooting {}
+
+#[cfg(doc)]
+#[doc = include_str!("../doc/glossary.md")]
+pub mod glossary {}
 
 /// Compiles the code of the README.
 #[cfg(doctest)]

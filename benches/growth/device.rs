@@ -12,7 +12,7 @@ use shadow_support::mesh::Mesh;
 use shadow_support::scene::{Light, Scene};
 use shadow_support::textbook::flat::DepthDrawer;
 use shadow_support::textbook::meshes::{ViewUniform, WorldMeshes};
-use wgpu_shadows::{Bias, Coverage, Filter};
+use wgpu_shadows::{Bias, CascadeLayout, Coverage, Filter};
 
 use super::crowd::{self, Crowd};
 use super::stage::{self, Stage, frame};
@@ -102,7 +102,7 @@ pub fn taps(stage: &Stage<'_>) {
             bias: Bias::Auto,
             map_size: 1024,
             fits_camera: false,
-            cascades: 1,
+            layout: CascadeLayout::fixed(1),
         };
         LibraryTechnique::new(stage.gpu, &scene, &casters, options).expect("a valid light")
     };
@@ -204,6 +204,5 @@ fn lamp_scene(gpu: &Gpu) -> Scene {
         },
         camera: camera::looking(Vec3::splat(half), Vec3::ZERO, 0.9),
         origin: DVec3::ZERO,
-        cascades: 1,
     }
 }

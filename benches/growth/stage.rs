@@ -6,7 +6,7 @@ use shadow_support::clock::Clock;
 use shadow_support::gpu::Gpu;
 use shadow_support::measure::statistics::Spread;
 use wgpu_shadows::{
-    CameraView, Casters, Coverage, DirectionalLight, DirectionalShadow,
+    CameraView, CascadeLayout, Casters, Coverage, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, Filter, ShadowCaster, ShadowFrameDescriptor, ShadowScene,
     report::ShadowReport,
 };
@@ -57,7 +57,7 @@ impl Stage<'_> {
     pub fn sun(&self, map_size: u32, cascades: u32, filter: Filter) -> Sun {
         let descriptor = DirectionalShadowDescriptor {
             map_size,
-            cascades,
+            layout: CascadeLayout::fixed(cascades),
             filter,
             ..Default::default()
         };

@@ -10,9 +10,9 @@ use glam::{DVec3, Vec3};
 use shadow_support::gpu::Gpu;
 use shadow_support::readback;
 use wgpu_shadows::{
-    Casters, Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowFrameDescriptor, ShadowScene,
-    debug::DebugImage, report::ShadowReport,
+    CascadeLayout, Casters, Coverage, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, ShadowBindings, ShadowBindingsDescriptor, ShadowCaster,
+    ShadowFrameDescriptor, ShadowScene, debug::DebugImage, report::ShadowReport,
 };
 
 use crate::density::Density;
@@ -61,7 +61,7 @@ impl Sun {
             &DirectionalShadowDescriptor {
                 label: Some("sun"),
                 map_size: MAP_SIZE,
-                cascades: CASCADES,
+                layout: CascadeLayout::fixed(CASCADES),
                 ..Default::default()
             },
         )?;

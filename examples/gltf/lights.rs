@@ -310,16 +310,13 @@ fn make_maps(
     });
     let letter = |number: usize| (b'a' + number as u8) as char;
     let mut maps = Vec::new();
-    let (cascades, layout) = options.cascades();
     for (number, &light) in suns.iter().take(MAX_SUNS).enumerate() {
         let shadow = DirectionalShadow::new(
             &gpu.device,
             &DirectionalShadowDescriptor {
                 label: Some("sun"),
                 map_size: options.map_size.unwrap_or(2048),
-                cascades,
-                layout,
-                split: options.split(),
+                layout: options.layout(),
                 filter: options.sun_filter(),
                 bias: options.bias,
                 ..Default::default()

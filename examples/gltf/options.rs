@@ -65,26 +65,18 @@ pub struct Options {
     pub frames: u32,
 }
 
-/// Is the largest number of cascades where their number is not given.
-const MOST_CASCADES: u32 = 4;
-
 impl Options {
-    /// Returns the number of cascades and how texels are divided among them.
-    pub fn cascades(&self) -> (u32, CascadeLayout) {
-        match (self.cascades, self.splits.len()) {
-            (Some(cascades), _) => (cascades, CascadeLayout::Fixed),
-            (None, 0) => (MOST_CASCADES, CascadeLayout::Automatic),
-            (None, ends) => (ends as u32 + 1, CascadeLayout::Fixed),
+    /// Returns how texels are divided among cascades. A number of `--splits` that is not one fewer
+    /// than `--cascades` is refused by the light.
+    pub fn layout(&self) -> CascadeLayout<'_> {
+        match (self.cascades, self.splits.as_slice()) {
+            (None, []) => CascadeLayout::default(),
+            (Some(cascades), []) => CascadeLayout::fixed(cascades),
+            (cascades, ends) => CascadeLayout::Fixed {
+                cascades: cascades.unwrap_or(ends.len() as u32 + 1),
+                split: CascadeSplit::Explicit { ends },
+            },
         }
-    }
-
-    /// Returns where the cascades end. A number of `--splits` that is not one fewer than
-    /// `--cascades` is refused by the light.
-    pub fn split(&self) -> CascadeSplit<'_> {
-        if self.splits.is_empty() {
-            return CascadeSplit::Logarithmic;
-        }
-        CascadeSplit::Explicit { ends: &self.splits }
     }
 
     /// Returns the filter of directional lights.

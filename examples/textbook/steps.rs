@@ -1,7 +1,7 @@
 //! Defines the steps: what each changes in the tutorial's set-up, and what it shows.
 
 use example_support::textbook::{BIAS_CONSTANT, BIAS_SLOPE};
-use wgpu_shadows::{Bias, CascadeSplit, DirectionalShadowDescriptor, Filter};
+use wgpu_shadows::{Bias, CascadeLayout, DirectionalShadowDescriptor, Filter};
 
 use crate::scene::MapRegion;
 use crate::viewpoint::Viewpoint;
@@ -41,8 +41,7 @@ const fn textbook(file: &'static str, sentence: &'static str, constant: f32, slo
         shadow: DirectionalShadowDescriptor {
             label: Some("textbook"),
             map_size: MAP_SIZE,
-            cascades: 1,
-            split: CascadeSplit::Logarithmic,
+            layout: CascadeLayout::fixed(1),
             filter: Filter::Nearest,
             bias: Bias::Manual { constant, slope },
             ..DirectionalShadowDescriptor::CHEAP
@@ -127,6 +126,7 @@ pub fn steps() -> Vec<Step> {
             sentence: "The library's own way: a derived bias, its default filter and a map fitted to what the camera sees.",
             shadow: DirectionalShadowDescriptor {
                 map_size: MAP_SIZE,
+                layout: CascadeLayout::fixed(1),
                 ..Default::default()
             },
             cull: None,

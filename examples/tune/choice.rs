@@ -1,9 +1,9 @@
 //! Chooses a configuration.
 
+use shadow_support::measure::configuration::Configuration;
 use shadow_support::measure::subject::Sample;
 use shadow_support::scene::Light;
 
-use crate::contest;
 use crate::paste;
 
 /// Is the factor by which errors may exceed the least and still count as good: a smaller difference
@@ -26,7 +26,7 @@ impl<'a> Choice<'a> {
     pub fn of(samples: &'a [Sample], work: f32) -> Result<Self, String> {
         let default = samples
             .iter()
-            .find(|sample| sample.configuration == contest::default())
+            .find(|sample| sample.configuration == Configuration::shipped_default())
             .ok_or("the default was not measured")?;
         let most = default.cost.frame_work() * f64::from(work);
         Ok(Self {

@@ -8,22 +8,14 @@ use shadow_support::measure::parallel;
 use shadow_support::measure::prober::Prober;
 use shadow_support::measure::subject::{Sample, Subject};
 use shadow_support::scene::{Light, Scene};
-use wgpu_shadows::{Bias, Filter};
+use wgpu_shadows::{Bias, CascadeLayout, Filter};
 
 use crate::options::Options;
 
 /// Is the number of timed runs of each configuration, each next to one of the tutorial's.
 const REPEATS: u32 = 3;
 
-/// Returns the library's default, as it is named here.
-pub fn default() -> Configuration {
-    Configuration {
-        cascades: Some(1),
-        ..Configuration::shipped_default()
-    }
-}
-
-/// Measures every filter with every map size and, for suns, number of cascades; and the tutorial's
+/// Measures every filter with every map size and, for suns, cascade layout; and the tutorial's
 /// method.
 pub fn measure(
     subject: &Subject<'_>,
@@ -50,14 +42,23 @@ fn configurations(light: &Light, quick: bool) -> Vec<Configuration> {
     } else {
         &[512, 1024, 2048, 4096]
     };
-    let cascades: &[u32] = match light {
-        Light::Sun { .. } if quick => &[1, 2, 4],
-        Light::Sun { .. } => &[1, 2, 3, 4],
-        Light::Spot { .. } | Light::Point { .. } => &[1],
+    let layouts: &[CascadeLayout<'_>] = match light {
+        Light::Sun { .. } if quick => &[
+            CascadeLayout::Automatic { max_cascades: 4 },
+            CascadeLayout::fixed(1),
+        ],
+        Light::Sun { .. } => &[
+            CascadeLayout::Automatic { max_cascades: 2 },
+            CascadeLayout::Automatic { max_cascades: 4 },
+            CascadeLayout::fixed(1),
+            CascadeLayout::fixed(2),
+            CascadeLayout::fixed(4),
+        ],
+        Light::Spot { .. } | Light::Point { .. } => &[CascadeLayout::Automatic { max_cascades: 4 }],
     };
     let mut all = Vec::new();
     for filter in filters(light, quick) {
-        for &cascades in cascades {
+        for &layout in layouts {
             all.extend(map_sizes.iter().map(|&map_size| Configuration {
                 method: Method::Library {
                     filter,
@@ -65,7 +66,7 @@ fn configurations(light: &Light, quick: bool) -> Vec<Configuration> {
                 },
                 map_size,
                 fits_camera: true,
-                cascades: Some(cascades),
+                layout,
             }));
         }
     }

@@ -71,7 +71,6 @@ fn from_file(path: &Path, options: &Options) -> Result<Scene, String> {
         light: convert(&light, file.origin, farthest)?,
         camera: file.camera,
         origin: file.origin,
-        cascades: 1,
         meshes,
     })
 }

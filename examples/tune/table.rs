@@ -6,12 +6,14 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
+use shadow_support::lookup_cost::most_cascades;
 use shadow_support::measure::chart::{self, Point, Words};
 use shadow_support::measure::configuration::Configuration;
 use shadow_support::measure::prober::Prober;
 use shadow_support::measure::report;
 use shadow_support::measure::subject::{Sample, Subject};
 use shadow_support::scene::Light;
+use wgpu_shadows::CascadeLayout;
 
 use crate::choice::Choice;
 
@@ -133,7 +135,7 @@ impl<'a> Table<'a> {
 
     fn csv(&self) -> String {
         let mut text = String::from(
-            "filter,map_size,cascades,rmse,false_shadow_percent,false_light_percent,texels_cleared,lookup_cycles,\
+            "filter,map_size,layout,rmse,false_shadow_percent,false_light_percent,texels_cleared,lookup_cycles,\
              frame_work,bytes,time_ratio,on_front\n",
         );
         for row in &self.rows {
@@ -149,7 +151,7 @@ impl<'a> Table<'a> {
                 "{},{},{},{},{},{},{},{},{},{},{},{}",
                 configuration.family(),
                 row.map_size,
-                configuration.cascades.unwrap_or(1),
+                layout_name(configuration.layout),
                 errors.rmse,
                 errors.false_shadow_percent,
                 errors.contact_light_percent + errors.deep_light_percent,
@@ -169,11 +171,11 @@ impl<'a> Table<'a> {
             let configuration = &row.sample.configuration;
             let remark = self.remark(row);
             let is_named = row.is_on_front || !remark.is_empty();
-            let cascades = configuration.cascades.unwrap_or(1);
+            let layout = layout_name(configuration.layout);
             Point {
                 cost: row.sample.cost.frame_work(),
                 error: row.sample.errors.rmse,
-                series: format!("{} {cascades}", configuration.family()),
+                series: format!("{} {layout}", configuration.family()),
                 family: configuration.family(),
                 mark: configuration.mark(),
                 label: is_named.then(|| format!("{}{remark}", row.name)),
@@ -191,12 +193,26 @@ const WORDS: Words<'_> = Words {
     error: "root of mean squared error of the visibility",
 };
 
-/// Returns a name such as "tent 3x3 sharp 3, 2048, 2 cascades".
+/// Returns a name such as "2 cascades", or "at most 4 cascades" where the layout is found.
+fn layout_name(layout: CascadeLayout<'_>) -> String {
+    match layout {
+        CascadeLayout::Automatic { max_cascades } => format!("at most {max_cascades} cascades"),
+        CascadeLayout::Fixed { cascades: 1, .. } => "1 cascade".to_owned(),
+        _ => format!("{} cascades", most_cascades(layout)),
+    }
+}
+
+/// Returns a name such as "tent 3x3 sharp 3, 2048, 2 cascades", without cascades where none apply.
 fn name(configuration: &Configuration, light: &Light) -> String {
     let family = configuration.family();
     let map_size = configuration.map_size_for(light);
-    match configuration.cascades {
-        Some(cascades) if cascades > 1 => format!("{family}, {map_size}, {cascades} cascades"),
+    match light {
+        Light::Sun { .. } if !configuration.is_textbook() => {
+            format!(
+                "{family}, {map_size}, {}",
+                layout_name(configuration.layout)
+            )
+        }
         _ => format!("{family}, {map_size}"),
     }
 }

@@ -4,7 +4,6 @@
 use crate::fit::axes::{LightAxes, LightBox, LightSpace};
 use crate::fit::boxes::Boxes;
 use crate::fit::cascade_bounds::Cascade;
-use crate::fit::cascade_layout::CascadeLayout;
 use crate::fit::caster_parts::PartScratch;
 use crate::fit::directional_casters::{DirectionalCaster, DirectionalCasters};
 use crate::fit::directional_input::{FitInput, FitLimits, Region};
@@ -183,7 +182,7 @@ impl DirectionalFit {
         visible: &SeenBounds,
         scratch: &mut FitScratch,
     ) -> FitLimits {
-        if limits.layout == CascadeLayout::Fixed {
+        if !limits.divides_layer {
             return *limits;
         }
         let depths = self.held_depths.as_ref();

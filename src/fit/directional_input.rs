@@ -6,7 +6,6 @@ use crate::Aabb;
 use crate::fit::axes::{LightBox, LightSpace};
 use crate::fit::boxes::Boxes;
 use crate::fit::camera::CameraFrustum;
-use crate::fit::cascade_layout::CascadeLayout;
 use crate::fit::caster_shape::CasterShape;
 use crate::fit::split::{MAX_CASCADES, SplitRule};
 use crate::fit::stability::Stability;
@@ -41,9 +40,9 @@ pub(crate) struct FitInput<'a> {
 pub(crate) struct FitLimits {
     /// Counts the texels per side of a layer.
     pub map_size: u32,
-    /// Selects whether the next three fields apply, or a layout that is found, of at most as many
-    /// cascades.
-    pub layout: CascadeLayout,
+    /// States that one layer is divided among at most `cascades` cascades, whose ends and
+    /// rectangles are found in each frame in place of those given here.
+    pub divides_layer: bool,
     pub margin_texels: u32,
     /// Is the height in texels, above a surface, below which the bias may leave a caster without
     /// its shadow.

@@ -15,9 +15,7 @@ use crate::receive::{
     LayerState, MapsFrame, Sampling, Selection, ShadowMaps, ShadowMapsDescriptor, ShadowReport,
     check_bias, check_fade, check_planar_filter,
 };
-use crate::{
-    Bias, CascadeSplit, DepthFormat, Filter, ShadowError, ShadowFrame, ShadowView, Stability,
-};
+use crate::{Bias, DepthFormat, Filter, ShadowError, ShadowFrame, ShadowView, Stability};
 
 /// Describes what a [`DirectionalShadow`] is made of. [`DirectionalShadow::new`] returns
 /// [`ShadowError::OutOfRange`] for values outside the ranges given here, and
@@ -27,22 +25,14 @@ pub struct DirectionalShadowDescriptor<'a> {
     /// Is the label from which all wgpu objects of the light derive theirs; "directional shadow" if
     /// `None`, the default.
     pub label: wgpu::Label<'a>,
-    /// Is the number of texels per side of each cascade's map, or of the one that all cascades
-    /// share under [`CascadeLayout::Automatic`]: from 1 to the device's `max_texture_dimension_2d`.
-    /// The default is 2048. Cost and memory grow with its square; the blur and the displacement of
-    /// an edge shrink in proportion to it.
+    /// Is the number of texels per side of the map that all cascades share, or of each cascade's
+    /// own under [`CascadeLayout::Fixed`]: from 1 to the device's `max_texture_dimension_2d`. The
+    /// default is 2048. Cost and memory grow with its square; the blur and the displacement of an
+    /// edge shrink in proportion to it.
     pub map_size: u32,
-    /// Is the number of cascades: 1..=8, and no more than the device's `max_texture_array_layers`.
-    /// The default is 1, which suits a scene that is as deep as it is wide; a view to the horizon
-    /// needs 3 or 4. With too few, texels are coarse near the camera. Under
-    /// [`CascadeLayout::Automatic`] it is the largest number of cascades; a lookup costs as much as
-    /// with that many.
-    pub cascades: u32,
-    /// Selects how the texels are divided among the cascades. The default is
-    /// [`CascadeLayout::Fixed`].
-    pub layout: CascadeLayout,
-    /// Selects where one cascade ends and the next begins. The default is logarithmic.
-    pub split: CascadeSplit<'a>,
+    /// Selects how many cascades there are, and how texels are divided among them. The default is
+    /// [`CascadeLayout::Automatic`], which finds both.
+    pub layout: CascadeLayout<'a>,
     /// Selects how a map is sampled. The default is that of [`Filter`]. Filters for point lights
     /// only are refused, and the light size of [`Filter::Pcss`] and [`Filter::PcssRotated`] is an
     /// angular diameter below π.
@@ -72,9 +62,7 @@ impl Default for DirectionalShadowDescriptor<'_> {
         Self {
             label: None,
             map_size: 2048,
-            cascades: 1,
-            layout: CascadeLayout::Fixed,
-            split: CascadeSplit::Logarithmic,
+            layout: CascadeLayout::default(),
             filter: Filter::default(),
             bias: Bias::Auto,
             blend: 0.0,
@@ -86,15 +74,12 @@ impl Default for DirectionalShadowDescriptor<'_> {
 }
 
 impl DirectionalShadowDescriptor<'_> {
-    /// Describes the cheapest light whose shadow edges are smooth: the sampler's own comparison, at
-    /// 0.4 times the cycles of the default's lookup, and a quarter of the default's texels, with
-    /// twice the default's error.
+    /// Describes a cheaper light whose shadow edges are smooth: the sampler's own comparison, at
+    /// half the cycles of the default's lookup, with 1.4 times the default's error.
     pub const CHEAP: Self = Self {
         label: None,
-        map_size: 1024,
-        cascades: 1,
-        layout: CascadeLayout::Fixed,
-        split: CascadeSplit::Logarithmic,
+        map_size: 2048,
+        layout: CascadeLayout::Automatic { max_cascades: 4 },
         filter: Filter::Hardware,
         bias: Bias::Auto,
         blend: 0.0,
@@ -169,17 +154,17 @@ impl DirectionalShadow {
         device: &wgpu::Device,
         descriptor: &DirectionalShadowDescriptor<'_>,
     ) -> Result<Self, ShadowError> {
+        let layout = &descriptor.layout;
+        let cascades = layout.most_cascades();
         check::in_range(
-            "DirectionalShadowDescriptor::cascades",
-            "in 1..=8",
-            (1..=MAX_CASCADES as u32).contains(&descriptor.cascades),
-            descriptor.cascades,
+            "DirectionalShadowDescriptor::layout",
+            "a layout with a number of cascades in 1..=8",
+            (1..=MAX_CASCADES as u32).contains(&cascades),
+            cascades,
         )?;
-        let split = match descriptor.layout {
-            CascadeLayout::Fixed => descriptor.split,
-            CascadeLayout::Automatic => CascadeSplit::Logarithmic,
-        };
-        let split = split.checked("DirectionalShadowDescriptor::split", descriptor.cascades)?;
+        let split = layout
+            .split()
+            .checked("DirectionalShadowDescriptor::layout", cascades)?;
         check::in_range(
             "DirectionalShadowDescriptor::blend",
             "in 0..=0.5",
@@ -209,11 +194,11 @@ impl DirectionalShadow {
                 size_field: "DirectionalShadowDescriptor::map_size",
                 map_size: descriptor.map_size,
                 lights: 1,
-                layers_field: "DirectionalShadowDescriptor::cascades",
+                layers_field: "DirectionalShadowDescriptor::layout",
                 sampling,
-                views_per_light: descriptor.cascades,
+                views_per_light: cascades,
                 selection: Selection::Cascades,
-                shares_layer: descriptor.layout == CascadeLayout::Automatic,
+                shares_layer: layout.is_automatic(),
                 indexed: false,
             },
         )?;
@@ -221,11 +206,11 @@ impl DirectionalShadow {
             maps,
             limits: FitLimits {
                 map_size: descriptor.map_size,
-                layout: descriptor.layout,
+                divides_layer: layout.is_automatic(),
                 rects: [TexelRect::whole(descriptor.map_size); MAX_CASCADES],
                 margin_texels: sampling.margin_texels(),
                 gap_texels: sampling.gap_texels(),
-                cascades: descriptor.cascades as usize,
+                cascades: cascades as usize,
                 split,
                 stability: descriptor.stability,
             },

@@ -7,7 +7,7 @@ use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use shadow_support::random::Random;
 use wgpu_shadows::{
-    Aabb, CameraView, CascadeSplit, DirectionalLight, DirectionalShadow,
+    Aabb, CameraView, CascadeLayout, CascadeSplit, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, ShadowCaster,
 };
 
@@ -71,8 +71,10 @@ fn no_frame_breaks_a_sun() {
     let gpu = gpu();
     let descriptor = DirectionalShadowDescriptor {
         map_size: 32,
-        cascades: 3,
-        split: CascadeSplit::Practical { lambda: 0.5 },
+        layout: CascadeLayout::Fixed {
+            cascades: 3,
+            split: CascadeSplit::Practical { lambda: 0.5 },
+        },
         ..Default::default()
     };
     let mut shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");

@@ -21,8 +21,7 @@ const MAP_SIZE: u32 = 256;
 
 const AUTOMATIC: DirectionalShadowDescriptor<'static> = DirectionalShadowDescriptor {
     map_size: MAP_SIZE,
-    cascades: 4,
-    layout: CascadeLayout::Automatic,
+    layout: CascadeLayout::Automatic { max_cascades: 4 },
     ..DirectionalShadowDescriptor::CHEAP
 };
 
@@ -165,8 +164,7 @@ fn lookups_read_the_rectangle_of_their_cascade() {
             };
             let fine = DirectionalShadowDescriptor {
                 map_size: 2048,
-                cascades: 1,
-                layout: CascadeLayout::Fixed,
+                layout: CascadeLayout::fixed(1),
                 filter,
                 ..AUTOMATIC
             };
@@ -244,7 +242,7 @@ fn small_maps_are_not_divided() {
     for map_size in [1, 2, 3, 17, 40] {
         let mut shadow = sun(&DirectionalShadowDescriptor {
             map_size,
-            cascades: 8,
+            layout: CascadeLayout::Automatic { max_cascades: 8 },
             ..AUTOMATIC
         });
         for index in 0..3 {

@@ -7,10 +7,10 @@ use shadow_support::mesh::Mesh;
 use shadow_support::random::Random;
 use shadow_support::readback;
 use wgpu_shadows::{
-    CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, MeshCaster,
-    OmniLight, OmniShadow, OmniShadowDescriptor, ShadowCaster, ShadowMaps,
-    caster::CasterPipelineDescriptor, caster::CasterVertex, caster::ModelTransform,
-    caster::PositionAttribute, report::ShadowReport, report::ViewStatus,
+    CascadeLayout, CasterPipeline, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor,
+    ShadowCaster, ShadowMaps, caster::CasterPipelineDescriptor, caster::CasterVertex,
+    caster::ModelTransform, caster::PositionAttribute, report::ShadowReport, report::ViewStatus,
 };
 
 use crate::fixtures::copies::{Alone, Shared, list, reflected, scattered, small_buffers};
@@ -62,7 +62,7 @@ impl Made {
 fn sun(gpu: &Gpu, casters: &[&dyn ShadowCaster]) -> Made {
     let descriptor = DirectionalShadowDescriptor {
         map_size: 64,
-        cascades: 4,
+        layout: CascadeLayout::fixed(4),
         ..Default::default()
     };
     let mut shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");

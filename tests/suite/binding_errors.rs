@@ -3,8 +3,9 @@
 
 use shadow_support::readback;
 use wgpu_shadows::{
-    DirectionalShadow, DirectionalShadowDescriptor, ShadowBindings, ShadowBindingsDescriptor,
-    debug::DebugImage, debug::DebugView, error::BindingsError, error::DebugViewError, shader,
+    CascadeLayout, DirectionalShadow, DirectionalShadowDescriptor, ShadowBindings,
+    ShadowBindingsDescriptor, debug::DebugImage, debug::DebugView, error::BindingsError,
+    error::DebugViewError, shader,
 };
 
 use crate::fixtures::gpu::{Gpu, gpu};
@@ -14,7 +15,7 @@ use crate::fixtures::wgsl;
 fn tiny_sun(gpu: &Gpu, cascades: u32) -> DirectionalShadow {
     let descriptor = DirectionalShadowDescriptor {
         map_size: 1,
-        cascades,
+        layout: CascadeLayout::fixed(cascades),
         ..Default::default()
     };
     DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun")

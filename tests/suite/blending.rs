@@ -8,8 +8,8 @@ use shadow_support::probe::Point;
 use shadow_support::readback;
 use wgpu_shadows::reference::{self, DepthLayer};
 use wgpu_shadows::{
-    Bias, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter, ShadowBindings,
-    ShadowBindingsDescriptor,
+    Bias, CascadeLayout, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter,
+    ShadowBindings, ShadowBindingsDescriptor,
 };
 
 use crate::fixtures::frames::{Coverage, DirectionalFrame};
@@ -38,7 +38,7 @@ fn sun(blend: f32) -> (DirectionalShadow, SunProbe) {
         &gpu.device,
         &DirectionalShadowDescriptor {
             map_size: MAP_SIZE,
-            cascades: 3,
+            layout: CascadeLayout::fixed(3),
             blend,
             ..Default::default()
         },
@@ -162,7 +162,7 @@ fn only_cascades_that_blend_have_weights() {
             &gpu().device,
             &DirectionalShadowDescriptor {
                 map_size: 16,
-                cascades,
+                layout: CascadeLayout::fixed(cascades),
                 blend,
                 ..Default::default()
             },

@@ -5,8 +5,8 @@ use glam::{DVec3, DVec4, Mat4};
 use shadow_support::camera::Camera;
 use shadow_support::mesh::Mesh;
 use wgpu_shadows::{
-    DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, debug::DebugView,
-    error::DebugViewError, error::DeviceError, reference,
+    CascadeLayout, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    debug::DebugView, error::DebugViewError, error::DeviceError, reference,
 };
 
 use crate::fixtures::frames::{Coverage, DirectionalFrame};
@@ -48,7 +48,7 @@ fn pixels_have_the_colours_of_their_cascades() {
         &gpu.device,
         &DirectionalShadowDescriptor {
             map_size: 128,
-            cascades: 3,
+            layout: CascadeLayout::fixed(3),
             ..Default::default()
         },
     )
@@ -116,6 +116,7 @@ fn what_cannot_be_tinted_is_refused() {
         &gpu.device,
         &DirectionalShadowDescriptor {
             map_size: 16,
+            layout: CascadeLayout::fixed(1),
             ..Default::default()
         },
     )

@@ -6,10 +6,10 @@ use shadow_support::mesh::Mesh;
 use shadow_support::readback;
 use wgpu::{BufferUsages, VertexFormat};
 use wgpu_shadows::{
-    Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    MeshCaster, ShadowCaster, ShadowView, caster::CasterPipelineDescriptor, caster::CasterVertex,
-    caster::MeshCasterDescriptor, caster::MeshIndices, caster::ModelTransform,
-    caster::PositionAttribute,
+    Aabb, CascadeLayout, CasterPipeline, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, MeshCaster, ShadowCaster, ShadowView,
+    caster::CasterPipelineDescriptor, caster::CasterVertex, caster::MeshCasterDescriptor,
+    caster::MeshIndices, caster::ModelTransform, caster::PositionAttribute,
 };
 
 use crate::fixtures::frames::{Coverage, DirectionalFrame};
@@ -40,6 +40,7 @@ impl ShadowCaster for InCube<'_> {
 fn depths(gpu: &Gpu, caster: &dyn ShadowCaster) -> Vec<f32> {
     let descriptor = DirectionalShadowDescriptor {
         map_size: MAP_SIZE,
+        layout: CascadeLayout::fixed(1),
         ..Default::default()
     };
     let mut shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");

@@ -6,9 +6,9 @@ use shadow_support::mesh::Mesh;
 use shadow_support::random::Random;
 use shadow_support::readback;
 use wgpu_shadows::{
-    CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniLight,
-    OmniShadow, OmniShadowDescriptor, ShadowCaster, caster::CasterPipelineDescriptor,
-    caster::is_closed_solid,
+    CascadeLayout, CasterPipeline, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowCaster,
+    caster::CasterPipelineDescriptor, caster::is_closed_solid,
 };
 
 use crate::fixtures::frames::{Coverage, DirectionalFrame, OmniFrame, RecordFrame};
@@ -146,6 +146,7 @@ fn back_faces_of_solids_change_no_map() {
             .fold(wgpu_shadows::Aabb::EMPTY, |all, c| all.union(c.bounds()));
         let sun = DirectionalShadowDescriptor {
             map_size: 256,
+            layout: CascadeLayout::fixed(1),
             ..Default::default()
         };
         let mut sun = DirectionalShadow::new(&gpu.device, &sun).expect("a valid sun");

@@ -6,8 +6,8 @@ use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use shadow_support::random::Random;
 use wgpu_shadows::{
-    Aabb, Bias, DepthFormat, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    Filter, ShadowCaster,
+    Aabb, Bias, CascadeLayout, DepthFormat, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, Filter, ShadowCaster,
 };
 
 use crate::fixtures::frames::{Coverage, DirectionalFrame};
@@ -154,6 +154,7 @@ fn brightest(
         filter,
         bias,
         depth_format: setting.depth_format,
+        layout: CascadeLayout::fixed(1),
         ..Default::default()
     };
     let mut shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");

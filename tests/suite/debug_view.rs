@@ -6,10 +6,10 @@ use image::RgbaImage;
 use shadow_support::mesh::Mesh;
 use shadow_support::readback;
 use wgpu_shadows::{
-    Aabb, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniLight, OmniShadow,
-    OmniShadowDescriptor, ShadowMaps, SpotLight, SpotShadow, SpotShadowDescriptor,
-    debug::DebugImage, debug::DebugView, error::DebugViewError, pool::OmniShadowPool,
-    pool::PoolDescriptor, pool::PoolLight,
+    Aabb, CascadeLayout, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    OmniLight, OmniShadow, OmniShadowDescriptor, ShadowMaps, SpotLight, SpotShadow,
+    SpotShadowDescriptor, debug::DebugImage, debug::DebugView, error::DebugViewError,
+    pool::OmniShadowPool, pool::PoolDescriptor, pool::PoolLight,
 };
 
 use crate::fixtures::ask::{record_omni, record_spot, submitted};
@@ -58,7 +58,7 @@ fn sun() -> (DirectionalShadow, Vec<f32>) {
     let gpu = gpu();
     let descriptor = DirectionalShadowDescriptor {
         map_size: MAP,
-        cascades: 2,
+        layout: CascadeLayout::fixed(2),
         ..Default::default()
     };
     let mut shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");

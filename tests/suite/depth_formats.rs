@@ -6,7 +6,7 @@ use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use shadow_support::readback;
 use wgpu_shadows::{
-    Aabb, CasterPipeline, DepthFormat, DirectionalLight, DirectionalShadow,
+    Aabb, CascadeLayout, CasterPipeline, DepthFormat, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, ShadowCaster, ShadowError, caster::CasterPipelineDescriptor,
     error::CasterError,
 };
@@ -23,6 +23,7 @@ fn sun(gpu: &Gpu, depth_format: DepthFormat) -> DirectionalShadow {
         &DirectionalShadowDescriptor {
             map_size: 128,
             depth_format,
+            layout: CascadeLayout::fixed(1),
             ..Default::default()
         },
     )

@@ -6,7 +6,8 @@ use shadow_support::mesh::Mesh;
 use shadow_support::random::Random;
 use shadow_support::readback;
 use wgpu_shadows::{
-    Aabb, DepthFormat, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    Aabb, CascadeLayout, DepthFormat, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor,
 };
 
 use crate::fixtures::frames::{Coverage, DirectionalFrame};
@@ -94,6 +95,7 @@ fn stored_depths_err_by_no_more_than_the_uniforms_say() {
         let descriptor = DirectionalShadowDescriptor {
             map_size: MAP_SIZE,
             depth_format,
+            layout: CascadeLayout::fixed(1),
             ..Default::default()
         };
         let mut shadow = DirectionalShadow::new(&gpu().device, &descriptor).expect("a valid sun");

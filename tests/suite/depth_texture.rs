@@ -4,7 +4,9 @@
 use glam::{DVec3, Vec3};
 use shadow_support::mesh::Mesh;
 use shadow_support::readback;
-use wgpu_shadows::{Aabb, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor};
+use wgpu_shadows::{
+    Aabb, CascadeLayout, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+};
 
 use crate::fixtures::frames::{Coverage, DirectionalFrame};
 use crate::fixtures::gpu::vulkan;
@@ -20,7 +22,7 @@ fn the_texture_can_be_copied() {
     let scene = Scene::new(gpu, &[Mesh::sphere(Vec3::Y, 1.0, 8)]);
     let descriptor = DirectionalShadowDescriptor {
         map_size: SIZE,
-        cascades: 2,
+        layout: CascadeLayout::fixed(2),
         ..Default::default()
     };
     let mut shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");

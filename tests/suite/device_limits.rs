@@ -6,12 +6,13 @@ use std::fmt::Debug;
 use glam::{DVec3, Mat4, Vec3};
 use shadow_support::mesh::Mesh;
 use wgpu_shadows::{
-    Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    OmniShadow, OmniShadowDescriptor, ShadowBindings, ShadowBindingsDescriptor, ShadowError,
-    ShadowViewUniform, SpotShadow, SpotShadowDescriptor, caster::CasterPipelineDescriptor,
-    caster::CasterVertex, caster::ModelTransform, caster::PositionAttribute, debug::DebugImage,
-    debug::DebugView, error::BindingsError, error::CasterError, error::DebugViewError,
-    pool::OmniShadowPool, pool::PoolDescriptor, pool::SpotShadowPool,
+    Aabb, CascadeLayout, CasterPipeline, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, OmniShadow, OmniShadowDescriptor, ShadowBindings,
+    ShadowBindingsDescriptor, ShadowError, ShadowViewUniform, SpotShadow, SpotShadowDescriptor,
+    caster::CasterPipelineDescriptor, caster::CasterVertex, caster::ModelTransform,
+    caster::PositionAttribute, debug::DebugImage, debug::DebugView, error::BindingsError,
+    error::CasterError, error::DebugViewError, pool::OmniShadowPool, pool::PoolDescriptor,
+    pool::SpotShadowPool,
 };
 
 use crate::fixtures::frames::{Coverage, DirectionalFrame, RecordFrame};
@@ -49,7 +50,7 @@ fn answered<T, E: Debug>(result: Result<T, E>, what: &str, refused: &mut usize) 
 fn sun_descriptor(cascades: u32) -> DirectionalShadowDescriptor<'static> {
     DirectionalShadowDescriptor {
         map_size: 8,
-        cascades,
+        layout: CascadeLayout::fixed(cascades),
         ..Default::default()
     }
 }
@@ -242,7 +243,7 @@ fn lights_with_more_layers_than_the_device_has() {
     let gpu = device(|limits| limits.max_texture_array_layers = 4);
     let limit = "max_texture_array_layers";
     let error = DirectionalShadow::new(&gpu.device, &sun_descriptor(5)).expect_err("five layers");
-    let field = "DirectionalShadowDescriptor::cascades";
+    let field = "DirectionalShadowDescriptor::layout";
     let over = |field, value| ShadowError::OverDeviceLimit {
         field,
         limit,
@@ -282,7 +283,7 @@ fn uniforms_larger_than_the_device_binds() {
         value: views * VIEW_BYTES,
     };
     let error = DirectionalShadow::new(&gpu.device, &sun_descriptor(5)).expect_err("five views");
-    assert_eq!(error, over("DirectionalShadowDescriptor::cascades", 5));
+    assert_eq!(error, over("DirectionalShadowDescriptor::layout", 5));
     DirectionalShadow::new(&gpu.device, &sun_descriptor(4)).expect("four views");
     let error = OmniShadow::new(&gpu.device, &Default::default()).expect_err("six views");
     assert_eq!(error, over("the six faces of an OmniShadow", 6));

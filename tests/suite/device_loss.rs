@@ -4,13 +4,13 @@
 use glam::{DVec3, Mat4, Vec3};
 use shadow_support::mesh::Mesh;
 use wgpu_shadows::{
-    Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    OmniLight, OmniShadow, OmniShadowDescriptor, ShadowBindings, ShadowBindingsDescriptor,
-    ShadowCaster, ShadowError, SpotLight, SpotShadow, SpotShadowDescriptor,
-    caster::CasterPipelineDescriptor, debug::DebugImage, debug::DebugView, error::BindingsError,
-    error::CasterError, error::DebugViewError, error::DeviceError, error::DeviceRefusal,
-    pool::OmniShadowPool, pool::PoolDescriptor, pool::PoolLight, pool::SpotShadowPool,
-    report::ViewStatus,
+    Aabb, CascadeLayout, CasterPipeline, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowBindings,
+    ShadowBindingsDescriptor, ShadowCaster, ShadowError, SpotLight, SpotShadow,
+    SpotShadowDescriptor, caster::CasterPipelineDescriptor, debug::DebugImage, debug::DebugView,
+    error::BindingsError, error::CasterError, error::DebugViewError, error::DeviceError,
+    error::DeviceRefusal, pool::OmniShadowPool, pool::PoolDescriptor, pool::PoolLight,
+    pool::SpotShadowPool, report::ViewStatus,
 };
 
 use crate::fixtures::copies::Alone;
@@ -39,6 +39,7 @@ struct Everything {
 fn sun(gpu: &Gpu) -> Result<DirectionalShadow, ShadowError> {
     let descriptor = DirectionalShadowDescriptor {
         map_size: 16,
+        layout: CascadeLayout::fixed(1),
         ..Default::default()
     };
     DirectionalShadow::new(&gpu.device, &descriptor)

@@ -6,7 +6,7 @@ use shadow_support::camera::Camera;
 use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use wgpu_shadows::{
-    Aabb, CameraView, Casters, Coverage, DirectionalLight, DirectionalShadow,
+    Aabb, CameraView, CascadeLayout, Casters, Coverage, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, OmniLight, OmniShadow, OmniShadowDescriptor,
     ShadowFrameDescriptor, ShadowScene, Stability,
 };
@@ -86,7 +86,7 @@ fn shadows_end_at_the_distance() {
         for (cascades, blend) in [(1, 0.0), (3, 0.0), (3, 0.2)] {
             let descriptor = DirectionalShadowDescriptor {
                 map_size: 512,
-                cascades,
+                layout: CascadeLayout::fixed(cascades),
                 blend,
                 stability,
                 ..Default::default()
@@ -117,6 +117,7 @@ fn shadows_fade_before_the_distance() {
     let descriptor = DirectionalShadowDescriptor {
         map_size: 512,
         fade: 0.25,
+        layout: CascadeLayout::fixed(1),
         ..Default::default()
     };
     let mut partial = 0;
@@ -143,6 +144,7 @@ fn several_cameras_share_an_end_if_they_look_the_same_way() {
     let points: Vec<_> = positions.iter().map(|(_, point)| *point).collect();
     let descriptor = DirectionalShadowDescriptor {
         map_size: 512,
+        layout: CascadeLayout::fixed(1),
         ..Default::default()
     };
     let limited = |camera: &Camera, distance| camera.view().with_max_distance(distance);
@@ -171,6 +173,7 @@ fn several_cameras_share_an_end_if_they_look_the_same_way() {
 fn eyes_that_are_turned_apart_share_an_end_anywhere() {
     let descriptor = DirectionalShadowDescriptor {
         map_size: 512,
+        layout: CascadeLayout::fixed(1),
         ..Default::default()
     };
     for aside in [0.0, 150.0] {
@@ -208,6 +211,7 @@ fn shadows_end_at_a_covered_box() {
     let light = DirectionalLight::new(Vec3::new(0.2, -1.0, 0.1));
     let descriptor = DirectionalShadowDescriptor {
         map_size: 256,
+        layout: CascadeLayout::fixed(1),
         ..Default::default()
     };
     let mut shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");

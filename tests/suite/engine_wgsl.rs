@@ -6,9 +6,9 @@ use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use wgpu::util::DeviceExt;
 use wgpu_shadows::{
-    Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    Revision, ShadowCaster, ShadowView, caster::CasterPipelineDescriptor, caster::CasterVertex,
-    report::ViewStatus,
+    Aabb, CascadeLayout, CasterPipeline, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, Revision, ShadowCaster, ShadowView,
+    caster::CasterPipelineDescriptor, caster::CasterVertex, report::ViewStatus,
 };
 
 use crate::fixtures::frames::{Coverage, DirectionalFrame};
@@ -161,6 +161,7 @@ impl Field {
     fn new(gpu: &Gpu) -> Self {
         let descriptor = DirectionalShadowDescriptor {
             map_size: 256,
+            layout: CascadeLayout::fixed(1),
             ..Default::default()
         };
         let shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");

@@ -2,7 +2,8 @@
 //! as a message that names field, rule and value.
 
 use wgpu_shadows::{
-    Bias, CascadeSplit, DirectionalShadow, DirectionalShadowDescriptor, Filter, ShadowError,
+    Bias, CascadeLayout, CascadeSplit, DirectionalShadow, DirectionalShadowDescriptor, Filter,
+    ShadowError,
 };
 
 use crate::fixtures::gpu::{Gpu, gpu};
@@ -15,6 +16,7 @@ fn sun(gpu: &Gpu, descriptor: &DirectionalShadowDescriptor<'_>) -> Result<(), Sh
 fn descriptors_out_of_range() {
     let good = DirectionalShadowDescriptor {
         map_size: 16,
+        layout: CascadeLayout::fixed(1),
         ..Default::default()
     };
     let sharpness = |sharpness| DirectionalShadowDescriptor {
@@ -26,16 +28,32 @@ fn descriptors_out_of_range() {
         ..good
     };
     let split = |lambda| DirectionalShadowDescriptor {
-        split: CascadeSplit::Practical { lambda },
+        layout: CascadeLayout::Fixed {
+            cascades: 1,
+            split: CascadeSplit::Practical { lambda },
+        },
         ..good
     };
-    let cascades = |cascades| DirectionalShadowDescriptor { cascades, ..good };
+    let cascades = |cascades| DirectionalShadowDescriptor {
+        layout: CascadeLayout::fixed(cascades),
+        ..good
+    };
     let size = |map_size| DirectionalShadowDescriptor { map_size, ..good };
     let filter_rule = "a filter with a finite sharpness of at least 1";
     let bias_rule = "a bias with a finite constant and slope of at least 0";
     let cases = [
-        (cascades(0), "cascades", "in 1..=8", "0"),
-        (cascades(9), "cascades", "in 1..=8", "9"),
+        (
+            cascades(0),
+            "layout",
+            "a layout with a number of cascades in 1..=8",
+            "0",
+        ),
+        (
+            cascades(9),
+            "layout",
+            "a layout with a number of cascades in 1..=8",
+            "9",
+        ),
         (size(0), "map_size", "at least 1", "0"),
         (sharpness(0.5), "filter", filter_rule, "0.5"),
         (sharpness(f32::NAN), "filter", filter_rule, "NaN"),
@@ -52,10 +70,15 @@ fn descriptors_out_of_range() {
             bias_rule,
             "constant 0, slope NaN",
         ),
-        (split(1.5), "split", "a split with a lambda in 0..=1", "1.5"),
+        (
+            split(1.5),
+            "layout",
+            "a split with a lambda in 0..=1",
+            "1.5",
+        ),
         (
             split(f32::NAN),
-            "split",
+            "layout",
             "a split with a lambda in 0..=1",
             "NaN",
         ),
@@ -77,6 +100,7 @@ fn maps_larger_than_the_device_allows() {
     let maximum = gpu().device.limits().max_texture_dimension_2d;
     let descriptor = DirectionalShadowDescriptor {
         map_size: maximum + 1,
+        layout: CascadeLayout::fixed(1),
         ..Default::default()
     };
     let error = sun(gpu(), &descriptor).expect_err("too large");

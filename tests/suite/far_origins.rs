@@ -7,8 +7,9 @@ use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use shadow_support::triangle::{Triangle, occluded};
 use wgpu_shadows::{
-    Aabb, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, MeshCaster,
-    ShadowCaster, ShadowError, ShadowView, ShadowViewUniform, Stability, report::ViewStatus,
+    Aabb, CascadeLayout, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    MeshCaster, ShadowCaster, ShadowError, ShadowView, ShadowViewUniform, Stability,
+    report::ViewStatus,
 };
 
 use crate::fixtures::ask::submitted;
@@ -189,7 +190,7 @@ fn scan(case: &Case, scene: &Scene, casters: &[MeshCaster]) -> usize {
     let gpu = gpu();
     let descriptor = DirectionalShadowDescriptor {
         map_size: case.map_size,
-        cascades: case.cascades,
+        layout: CascadeLayout::fixed(case.cascades),
         stability: case.stability,
         ..Default::default()
     };
@@ -283,7 +284,7 @@ fn frames_are_taken_as_far_as_the_docs_say() {
         for map_size in [16_u32, 64, 256, 1024] {
             let descriptor = DirectionalShadowDescriptor {
                 map_size,
-                cascades,
+                layout: CascadeLayout::fixed(cascades),
                 stability,
                 ..Default::default()
             };

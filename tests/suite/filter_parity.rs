@@ -15,8 +15,8 @@ use shadow_support::random::Random;
 use shadow_support::readback;
 use wgpu_shadows::reference::{self, DepthLayer, Receiver};
 use wgpu_shadows::{
-    Aabb, Bias, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter,
-    ShadowViewUniform,
+    Aabb, Bias, CascadeLayout, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    Filter, ShadowViewUniform,
 };
 
 use crate::fixtures::frames::{Coverage, DirectionalFrame};
@@ -84,6 +84,7 @@ impl Lit {
             map_size,
             filter,
             bias,
+            layout: CascadeLayout::fixed(1),
             ..Default::default()
         };
         let mut shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");

@@ -6,8 +6,8 @@ use shadow_support::camera::Camera;
 use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use wgpu_shadows::{
-    Aabb, CameraView, Casters, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    ShadowCaster, ShadowError, ShadowFrameDescriptor, ShadowScene,
+    Aabb, CameraView, CascadeLayout, Casters, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, ShadowCaster, ShadowError, ShadowFrameDescriptor, ShadowScene,
 };
 
 use crate::fixtures::frames::{Coverage, DirectionalFrame, RecordFrame};
@@ -45,7 +45,7 @@ impl Stage {
     fn new() -> Self {
         let descriptor = DirectionalShadowDescriptor {
             map_size: 64,
-            cascades: 2,
+            layout: CascadeLayout::fixed(2),
             ..Default::default()
         };
         let mut shadow = DirectionalShadow::new(&gpu().device, &descriptor).expect("a valid sun");

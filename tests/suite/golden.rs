@@ -8,8 +8,9 @@ use shadow_support::camera::Camera;
 use shadow_support::mesh::Mesh;
 use shadow_support::readback;
 use wgpu_shadows::{
-    Aabb, Bias, CameraView, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    Filter, ShadowBindings, ShadowBindingsDescriptor, debug::DebugImage, debug::DebugView,
+    Aabb, Bias, CameraView, CascadeLayout, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, Filter, ShadowBindings, ShadowBindingsDescriptor,
+    debug::DebugImage, debug::DebugView,
 };
 
 use crate::fixtures::frames::{Coverage, DirectionalFrame};
@@ -199,6 +200,7 @@ fn a_scene_with_the_defaults() {
     let (gpu, scene) = (gpu(), scene());
     let descriptor = DirectionalShadowDescriptor {
         map_size: 512,
+        layout: CascadeLayout::fixed(1),
         ..Default::default()
     };
     let shadow = sun(gpu, &scene, &descriptor, Coverage::Camera(camera().view()));
@@ -216,6 +218,7 @@ fn a_scene_by_the_textbook() {
             constant: 0.05,
             slope: 0.2,
         },
+        layout: CascadeLayout::fixed(1),
         ..Default::default()
     };
     let whole = Aabb::new(Vec3::new(-6.0, 0.0, -6.0), Vec3::new(6.0, 3.0, 6.0));
@@ -228,6 +231,7 @@ fn a_map_as_a_picture() {
     let (gpu, scene) = (gpu(), scene());
     let descriptor = DirectionalShadowDescriptor {
         map_size: 128,
+        layout: CascadeLayout::fixed(1),
         ..Default::default()
     };
     let shadow = sun(gpu, &scene, &descriptor, Coverage::Camera(camera().view()));

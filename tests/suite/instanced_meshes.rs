@@ -5,7 +5,7 @@ use shadow_support::camera::Camera;
 use shadow_support::mesh::{Mesh, render_space_pipeline};
 use shadow_support::random::Random;
 use wgpu_shadows::{
-    Aabb, CasterPipeline, CasterSet, Casters, DirectionalLight, DirectionalShadow,
+    Aabb, CascadeLayout, CasterPipeline, CasterSet, Casters, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, InstancedMeshCaster, ShadowCaster, ShadowFrameDescriptor,
     ShadowScene, caster::CasterPipelineDescriptor, error::CasterError, report::BrokenBounds,
     report::ViewStatus,
@@ -31,7 +31,7 @@ fn at(x: f32, z: f32) -> Mat4 {
 fn cascades(gpu: &Gpu) -> DirectionalShadow {
     let descriptor = DirectionalShadowDescriptor {
         map_size: 64,
-        cascades: 3,
+        layout: CascadeLayout::fixed(3),
         ..Default::default()
     };
     DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun")

@@ -6,8 +6,8 @@ use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use shadow_support::readback;
 use wgpu_shadows::{
-    Aabb, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, MeshCaster, Revision,
-    ShadowCaster, report::ShadowReport, report::ViewStatus,
+    Aabb, CascadeLayout, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    MeshCaster, Revision, ShadowCaster, report::ShadowReport, report::ViewStatus,
 };
 
 use crate::fixtures::frames::{Coverage, DirectionalFrame, RecordFrame};
@@ -38,7 +38,7 @@ impl Stage {
         let gpu = gpu();
         let descriptor = DirectionalShadowDescriptor {
             map_size: 128,
-            cascades,
+            layout: CascadeLayout::fixed(cascades),
             ..Default::default()
         };
         let shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");

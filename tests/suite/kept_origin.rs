@@ -7,9 +7,10 @@ use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use shadow_support::random::Random;
 use wgpu_shadows::{
-    Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    Revision, ShadowCaster, SpotLight, SpotShadow, SpotShadowDescriptor, pool::PoolDescriptor,
-    pool::PoolLight, pool::SpotShadowPool, report::ShadowReport, report::ViewStatus,
+    Aabb, CascadeLayout, CasterPipeline, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, Revision, ShadowCaster, SpotLight, SpotShadow,
+    SpotShadowDescriptor, pool::PoolDescriptor, pool::PoolLight, pool::SpotShadowPool,
+    report::ShadowReport, report::ViewStatus,
 };
 
 use crate::fixtures::ask::{Ask, record_spot, submitted};
@@ -195,6 +196,7 @@ fn a_wall_copied_while_the_origin_moves() {
         let wall = Wall::at(distance);
         let descriptor = DirectionalShadowDescriptor {
             map_size: 512,
+            layout: CascadeLayout::fixed(1),
             ..Default::default()
         };
         let mut shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");

@@ -5,8 +5,8 @@ use glam::{DVec3, Mat4, Vec3};
 use shadow_support::mesh::Mesh;
 use shadow_support::readback;
 use wgpu_shadows::{
-    Aabb, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, ShadowCaster,
-    caster::MeshIndices, error::CasterError, report::ViewStatus,
+    Aabb, CascadeLayout, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    ShadowCaster, caster::MeshIndices, error::CasterError, report::ViewStatus,
 };
 
 use crate::fixtures::frames::{Coverage, DirectionalFrame};
@@ -30,6 +30,7 @@ fn status(gpu: &Gpu, shadow: &mut DirectionalShadow, caster: &dyn ShadowCaster) 
 fn sun(gpu: &Gpu) -> DirectionalShadow {
     let descriptor = DirectionalShadowDescriptor {
         map_size: 64,
+        layout: CascadeLayout::fixed(1),
         ..Default::default()
     };
     DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun")

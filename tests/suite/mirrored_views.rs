@@ -6,8 +6,8 @@ use shadow_support::camera::{Camera, Lens};
 use shadow_support::mesh::Mesh;
 use shadow_support::triangle::occluded;
 use wgpu_shadows::{
-    Bias, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, ShadowBindings,
-    ShadowBindingsDescriptor,
+    Bias, CascadeLayout, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    ShadowBindings, ShadowBindingsDescriptor,
 };
 
 use crate::fixtures::frames::{Coverage, DirectionalFrame};
@@ -218,6 +218,7 @@ fn a_mirror_shows_no_acne() {
     let descriptor = DirectionalShadowDescriptor {
         map_size: 512,
         bias: Bias::Auto,
+        layout: CascadeLayout::fixed(1),
         ..Default::default()
     };
     let mut shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");

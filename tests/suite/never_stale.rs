@@ -142,11 +142,12 @@ fn throw_away<F, L: RecordFrame<F>>(gpu: &Gpu, lights: [&mut L; 2], frame: &F) {
 /// dropped.
 #[test]
 fn kept_maps_of_a_sun_are_what_would_be_drawn() {
+    const AUTOMATIC: CascadeLayout<'_> = CascadeLayout::Automatic { max_cascades: 2 };
     for (format, layout, frames) in [
-        (DepthFormat::Float32, CascadeLayout::Fixed, 1500),
-        (DepthFormat::Unorm16, CascadeLayout::Fixed, 500),
-        (DepthFormat::Float32, CascadeLayout::Automatic, 600),
-        (DepthFormat::Unorm16, CascadeLayout::Automatic, 300),
+        (DepthFormat::Float32, CascadeLayout::fixed(2), 1500),
+        (DepthFormat::Unorm16, CascadeLayout::fixed(2), 500),
+        (DepthFormat::Float32, AUTOMATIC, 600),
+        (DepthFormat::Unorm16, AUTOMATIC, 300),
     ] {
         let gpu = vulkan();
         let pipeline = CasterPipeline::new(
@@ -161,10 +162,9 @@ fn kept_maps_of_a_sun_are_what_would_be_drawn() {
         let descriptor = DirectionalShadowDescriptor {
             // A smaller map is not divided.
             map_size: match layout {
-                CascadeLayout::Fixed => 128,
+                CascadeLayout::Fixed { .. } => 128,
                 _ => 256,
             },
-            cascades: 2,
             layout,
             depth_format: format,
             ..Default::default()
@@ -217,7 +217,7 @@ fn kept_maps_of_a_sun_are_what_would_be_drawn() {
             divided |= drawn.any(|view| view.texels.size.x < descriptor.map_size);
         }
         ways.assert_all_taken(frames / 20);
-        assert_eq!(divided, layout == CascadeLayout::Automatic);
+        assert_eq!(divided, layout == AUTOMATIC);
     }
 }
 

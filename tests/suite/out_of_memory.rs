@@ -1,8 +1,9 @@
 //! Tests maps that do not fit into the device's memory.
 
 use wgpu_shadows::{
-    DirectionalShadow, DirectionalShadowDescriptor, OmniShadow, OmniShadowDescriptor, ShadowError,
-    pool::OmniShadowPool, pool::PoolDescriptor, pool::SpotShadowPool,
+    CascadeLayout, DirectionalShadow, DirectionalShadowDescriptor, OmniShadow,
+    OmniShadowDescriptor, ShadowError, pool::OmniShadowPool, pool::PoolDescriptor,
+    pool::SpotShadowPool,
 };
 
 use crate::fixtures::gpu::{GpuRequest, own_gpu};
@@ -25,7 +26,7 @@ fn maps_larger_than_the_memory() {
     let map_size = 16384;
     let sun = DirectionalShadowDescriptor {
         map_size,
-        cascades: 8,
+        layout: CascadeLayout::fixed(8),
         ..Default::default()
     };
     let lamp = OmniShadowDescriptor {

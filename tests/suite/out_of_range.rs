@@ -10,8 +10,8 @@ use shadow_support::readback;
 use shadow_support::triangle::occluded;
 use wgpu_shadows::reference::receiver;
 use wgpu_shadows::{
-    Aabb, Bias, CameraView, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    Filter,
+    Aabb, Bias, CameraView, CascadeLayout, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, Filter,
 };
 
 use crate::fixtures::frames::{Coverage, DirectionalFrame};
@@ -39,6 +39,7 @@ impl Hall {
             map_size: MAP_SIZE,
             filter,
             bias,
+            layout: CascadeLayout::fixed(1),
             ..Default::default()
         };
         let mut shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");
@@ -260,6 +261,7 @@ impl FarSlab {
     fn record(&self, gpu: &Gpu) -> DirectionalShadow {
         let descriptor = DirectionalShadowDescriptor {
             map_size: 512,
+            layout: CascadeLayout::fixed(1),
             ..Default::default()
         };
         let mut shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");

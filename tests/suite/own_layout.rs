@@ -8,8 +8,8 @@ use shadow_support::mesh::Mesh;
 use shadow_support::probe::{Point, PointShader};
 use shadow_support::random::Random;
 use wgpu_shadows::{
-    DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniLight, OmniShadow,
-    OmniShadowDescriptor, shader,
+    CascadeLayout, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniLight,
+    OmniShadow, OmniShadowDescriptor, shader,
 };
 
 use crate::fixtures::ask::{Ask, record_omni};
@@ -84,6 +84,7 @@ fn own_bindings_give_the_same_bits() {
     let descriptor = DirectionalShadowDescriptor {
         map_size: 256,
         fade: 0.5,
+        layout: CascadeLayout::fixed(1),
         ..Default::default()
     };
     let mut sun = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");

@@ -5,7 +5,8 @@ use glam::{DVec3, Vec2};
 use shadow_support::camera::Camera;
 use shadow_support::mesh::Mesh;
 use wgpu_shadows::{
-    Bias, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter, reference,
+    Bias, CascadeLayout, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter,
+    reference,
 };
 
 use super::penumbra::sun_profile;
@@ -40,6 +41,7 @@ fn the_grain_is_fixed_in_the_world() {
         &DirectionalShadowDescriptor {
             map_size: 512,
             filter,
+            layout: CascadeLayout::fixed(1),
             ..Default::default()
         },
     )

@@ -15,8 +15,8 @@ use shadow_support::probe::Point;
 use shadow_support::readback;
 use wgpu_shadows::reference::{self, DepthLayer, Receiver};
 use wgpu_shadows::{
-    Aabb, Bias, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Filter,
-    SpotLight, SpotShadow, SpotShadowDescriptor,
+    Aabb, Bias, CascadeLayout, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    Filter, SpotLight, SpotShadow, SpotShadowDescriptor,
 };
 
 use crate::fixtures::ask::{Ask, record_spot};
@@ -226,6 +226,7 @@ pub(super) fn sun_profile(
     let descriptor = DirectionalShadowDescriptor {
         map_size,
         filter,
+        layout: CascadeLayout::fixed(1),
         ..Default::default()
     };
     let mut shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");
@@ -329,6 +330,7 @@ fn shadows_are_hard_where_the_caster_touches() {
         filter: Filter::Pcss {
             light_size: diameter,
         },
+        layout: CascadeLayout::fixed(1),
         ..Default::default()
     };
     let mut shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");

@@ -8,7 +8,7 @@ use shadow_support::probe::Point;
 use shadow_support::random::Random;
 use shadow_support::triangle::{Triangle, occluded};
 use wgpu_shadows::{
-    Aabb, CameraView, Casters, Coverage, DirectionalLight, DirectionalShadow,
+    Aabb, CameraView, CascadeLayout, Casters, Coverage, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor,
     ShadowCaster, ShadowFrameDescriptor, ShadowScene, ShadowView, SpotLight, SpotShadow,
     SpotShadowDescriptor, Stability, report::ShadowReport, report::ViewStatus,
@@ -111,7 +111,7 @@ impl Yards {
 fn sun(gpu: &Gpu, stability: Stability, cascades: u32) -> DirectionalShadow {
     let descriptor = DirectionalShadowDescriptor {
         map_size: MAP_SIZE,
-        cascades,
+        layout: CascadeLayout::fixed(cascades),
         stability,
         ..Default::default()
     };

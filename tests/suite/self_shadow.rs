@@ -10,8 +10,8 @@ use shadow_support::probe::Point;
 use shadow_support::random::Random;
 use shadow_support::readback;
 use wgpu_shadows::{
-    Aabb, Bias, DepthFormat, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    Filter, report::ShadowReport,
+    Aabb, Bias, CascadeLayout, DepthFormat, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, Filter, report::ShadowReport,
 };
 
 use crate::fixtures::frames::{Coverage, DirectionalFrame};
@@ -182,6 +182,7 @@ impl Sun {
             filter,
             bias,
             depth_format,
+            layout: CascadeLayout::fixed(1),
             ..Default::default()
         };
         let shadow = DirectionalShadow::new(&gpu.device, &descriptor).expect("a valid sun");

@@ -6,7 +6,7 @@ use shadow_support::camera::{Camera, Lens};
 use shadow_support::mesh::Mesh;
 use shadow_support::random::Random;
 use wgpu_shadows::{
-    DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Stability,
+    CascadeLayout, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, Stability,
     report::ShadowReport,
 };
 
@@ -63,6 +63,7 @@ fn a_picture_from_the_light_is_its_own_footprint() {
         Vec3::NEG_Y,
         &DirectionalShadowDescriptor {
             map_size: 256,
+            layout: CascadeLayout::fixed(1),
             ..Default::default()
         },
     );
@@ -109,7 +110,7 @@ fn fitted_maps_waste_less_than_half() {
                 TOWN_SUN,
                 &DirectionalShadowDescriptor {
                     map_size: 256,
-                    cascades: 4,
+                    layout: CascadeLayout::fixed(4),
                     stability,
                     ..Default::default()
                 },

@@ -6,7 +6,8 @@ use shadow_support::camera::Camera;
 use shadow_support::probe::Point;
 use shadow_support::random::Random;
 use wgpu_shadows::{
-    CascadeSplit, DirectionalShadow, DirectionalShadowDescriptor, ShadowError, Stability, reference,
+    CascadeLayout, CascadeSplit, DirectionalShadow, DirectionalShadowDescriptor, ShadowError,
+    Stability, reference,
 };
 
 use crate::fixtures::frames::RecordFrame;
@@ -32,7 +33,7 @@ fn a_walk_changes_shadows_only_with_a_rung() {
     let list = scene.list();
     let mut shadow = sun(&DirectionalShadowDescriptor {
         map_size: MAP_SIZE,
-        cascades: 4,
+        layout: CascadeLayout::fixed(4),
         ..Default::default()
     });
     let probe = SunProbe::new(gpu(), &shadow);
@@ -97,7 +98,7 @@ fn no_motion_changes_a_spheres_texels() {
     let list = scene.list();
     let mut shadow = sun(&DirectionalShadowDescriptor {
         map_size: 256,
-        cascades: 3,
+        layout: CascadeLayout::fixed(3),
         stability: Stability::BoundingSphere,
         ..Default::default()
     });
@@ -140,6 +141,7 @@ fn a_sphere_around_an_endless_view_is_refused() {
     let mut shadow = sun(&DirectionalShadowDescriptor {
         map_size: 64,
         stability: Stability::BoundingSphere,
+        layout: CascadeLayout::fixed(1),
         ..Default::default()
     });
     let mut encoder = gpu().encoder();
@@ -168,8 +170,10 @@ fn explicit_splits_end_where_they_say() {
     let ends = &[15.0, 40.0];
     let mut shadow = sun(&DirectionalShadowDescriptor {
         map_size: 256,
-        cascades: 3,
-        split: CascadeSplit::Explicit { ends },
+        layout: CascadeLayout::Fixed {
+            cascades: 3,
+            split: CascadeSplit::Explicit { ends },
+        },
         ..Default::default()
     });
     let camera = walker(0);
@@ -207,9 +211,11 @@ fn explicit_splits_end_where_they_say() {
     // Ends before everything that is seen leave their cascades empty.
     let mut shadow = sun(&DirectionalShadowDescriptor {
         map_size: 256,
-        cascades: 3,
-        split: CascadeSplit::Explicit {
-            ends: &[0.01, 0.02],
+        layout: CascadeLayout::Fixed {
+            cascades: 3,
+            split: CascadeSplit::Explicit {
+                ends: &[0.01, 0.02],
+            },
         },
         ..Default::default()
     });
@@ -229,8 +235,10 @@ fn explicit_splits_end_where_they_say() {
         let refused = DirectionalShadow::new(
             &gpu().device,
             &DirectionalShadowDescriptor {
-                cascades: 3,
-                split: CascadeSplit::Explicit { ends },
+                layout: CascadeLayout::Fixed {
+                    cascades: 3,
+                    split: CascadeSplit::Explicit { ends },
+                },
                 ..Default::default()
             },
         );

@@ -4,7 +4,7 @@
 //! what cannot be read is told and left out.
 
 use glam::Vec3;
-use wgpu_shadows::{Bias, CascadeLayout, CascadeSplit, DepthFormat, Filter, Stability};
+use wgpu_shadows::{Bias, CascadeSplit, DepthFormat, Filter, Stability};
 
 use crate::scene;
 use crate::settings::{Covers, Settings, Show, SideSettings};
@@ -103,7 +103,7 @@ fn side_pairs(side: &SideSettings) -> impl Iterator<Item = (&'static str, String
         max_distance,
         map_size,
         cascades,
-        layout,
+        divides_map,
         split,
         filter,
         bias,
@@ -120,10 +120,7 @@ fn side_pairs(side: &SideSettings) -> impl Iterator<Item = (&'static str, String
         ("end", max_distance.to_string()),
         ("map", map_size.to_string()),
         ("cascades", cascades.to_string()),
-        (
-            "found",
-            u8::from(layout == CascadeLayout::Automatic).to_string(),
-        ),
+        ("found", u8::from(divides_map).to_string()),
         ("splits", split_name(split)),
         ("filter", filter_name(filter)),
         ("bias", bias_name(bias)),
@@ -155,8 +152,7 @@ fn set_side(side: &mut SideSettings, key: &str, value: &str) -> Option<()> {
         "end" => side.max_distance = number(value, 0.0, 1e9)?,
         "map" => side.map_size = value.parse().ok().filter(|n| (1..=16384).contains(n))?,
         "cascades" => side.cascades = value.parse().ok().filter(|n| (1..=8).contains(n))?,
-        "found" if value == "1" => side.layout = CascadeLayout::Automatic,
-        "found" => side.layout = CascadeLayout::Fixed,
+        "found" => side.divides_map = value == "1",
         "splits" => side.split = split(value)?,
         "filter" => side.filter = filter(value)?,
         "bias" => side.bias = bias(value)?,
@@ -308,7 +304,7 @@ mod tests {
             max_distance: 123.456,
             map_size: 4096,
             cascades: 7,
-            layout: CascadeLayout::Automatic,
+            divides_map: true,
             split: CascadeSplit::Practical { lambda: 0.7 },
             filter: Filter::Tent7 { sharpness: 5.5 },
             bias: Bias::Manual {

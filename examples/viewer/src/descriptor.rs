@@ -2,7 +2,9 @@
 //!
 //! This is the only place that knows the fields of a descriptor.
 
-use wgpu_shadows::{DirectionalShadowDescriptor, Filter, pool::PoolDescriptor};
+use wgpu_shadows::{
+    CascadeLayout, CascadeSplit, DirectionalShadowDescriptor, Filter, pool::PoolDescriptor,
+};
 
 use crate::settings::{Covers, SideSettings};
 
@@ -18,15 +20,26 @@ impl SideSettings {
         DirectionalShadowDescriptor {
             label: None,
             map_size: self.map_size,
-            cascades: self.cascades,
-            layout: self.layout,
-            split: self.split,
+            layout: self.layout(),
             filter: with_light_size(self.filter, sun_radians),
             bias: self.bias,
             blend: self.blend,
             fade: self.fade,
             stability: self.stability,
             depth_format: self.depth_format,
+        }
+    }
+
+    fn layout(&self) -> CascadeLayout<'static> {
+        if self.divides_map {
+            CascadeLayout::Automatic {
+                max_cascades: self.cascades,
+            }
+        } else {
+            CascadeLayout::Fixed {
+                cascades: self.cascades,
+                split: self.split,
+            }
         }
     }
 
@@ -62,9 +75,11 @@ impl SideSettings {
         let default = DirectionalShadowDescriptor::default();
         let mut members = Members::default();
         members.add("map_size", own.map_size, default.map_size, "");
-        members.add("cascades", own.cascades, default.cascades, "");
-        members.add("layout", own.layout, default.layout, "CascadeLayout::");
-        members.add("split", own.split, default.split, "CascadeSplit::");
+        members.add_text(
+            "layout",
+            own.layout != default.layout,
+            layout_rust(own.layout),
+        );
         members.add("filter", own.filter, default.filter, "Filter::");
         members.add("bias", own.bias, default.bias, "Bias::");
         members.add("blend", own.blend, default.blend, "");
@@ -110,6 +125,21 @@ fn pool_rust(own: &PoolDescriptor<'_>) -> String {
     members.of("PoolDescriptor")
 }
 
+/// Returns Rust that makes a layout.
+fn layout_rust(layout: CascadeLayout<'_>) -> String {
+    match layout {
+        CascadeLayout::Fixed {
+            cascades,
+            split: CascadeSplit::Logarithmic,
+        } => format!("CascadeLayout::fixed({cascades})"),
+        CascadeLayout::Fixed { cascades, split } => {
+            let split = format!("CascadeSplit::{split:?}");
+            format!("CascadeLayout::Fixed {{ cascades: {cascades}, split: {split} }}")
+        }
+        other => format!("CascadeLayout::{other:?}"),
+    }
+}
+
 /// Returns the filter with the size of the light, if it has one.
 fn with_light_size(filter: Filter, size: f32) -> Filter {
     let light_size = size.max(LEAST_LIGHT_SIZE);
@@ -127,8 +157,13 @@ struct Members(Vec<String>);
 impl Members {
     /// Adds a member if it differs from the default. `path` precedes the value.
     fn add<T: PartialEq + std::fmt::Debug>(&mut self, name: &str, own: T, default: T, path: &str) {
-        if own != default {
-            self.0.push(format!("    {name}: {path}{own:?},\n"));
+        self.add_text(name, own != default, format!("{path}{own:?}"));
+    }
+
+    /// Adds a member whose value is given as Rust if it differs from the default.
+    fn add_text(&mut self, name: &str, differs: bool, value: String) {
+        if differs {
+            self.0.push(format!("    {name}: {value},\n"));
         }
     }
 
@@ -140,7 +175,7 @@ impl Members {
 
 #[cfg(test)]
 mod tests {
-    use wgpu_shadows::{Bias, CascadeLayout, CascadeSplit, DepthFormat, Stability};
+    use wgpu_shadows::{Bias, DepthFormat, Stability};
 
     use super::*;
 
@@ -161,7 +196,7 @@ mod tests {
 
     #[test]
     fn the_default_is_short() {
-        let side = SideSettings::library(1);
+        let side = SideSettings::library();
         check!(
             side.sun_rust(0.01),
             side.sun(0.01),
@@ -176,7 +211,7 @@ mod tests {
         let side = SideSettings {
             map_size: 512,
             cascades: 3,
-            layout: CascadeLayout::Automatic,
+            divides_map: false,
             split: CascadeSplit::Practical { lambda: 0.75 },
             filter: Filter::PcssRotated { light_size: 9.0 },
             bias: Bias::Manual {
@@ -187,16 +222,17 @@ mod tests {
             fade: 0.25,
             stability: Stability::BoundingSphere,
             depth_format: DepthFormat::Unorm16,
-            ..SideSettings::library(1)
+            ..SideSettings::library()
         };
         check!(
             side.sun_rust(0.5),
             side.sun(0.5),
             DirectionalShadowDescriptor {
                 map_size: 512,
-                cascades: 3,
-                layout: CascadeLayout::Automatic,
-                split: CascadeSplit::Practical { lambda: 0.75 },
+                layout: CascadeLayout::Fixed {
+                    cascades: 3,
+                    split: CascadeSplit::Practical { lambda: 0.75 }
+                },
                 filter: Filter::PcssRotated { light_size: 0.5 },
                 bias: Bias::Manual {
                     constant: 1e-7,

@@ -8,7 +8,7 @@ use glam::Vec3;
 use shadow_support::gpu::Gpu;
 use shadow_support::measure::error::Errors;
 use wgpu_shadows::report::{ShadowReport, ViewStatus};
-use wgpu_shadows::{CascadeLayout, DirectionalLight, ShadowMaps};
+use wgpu_shadows::{DirectionalLight, ShadowMaps};
 
 use crate::device_clock::DeviceClock;
 use crate::picture::{Contents, Picture};
@@ -357,7 +357,7 @@ impl Engine {
         let filter = filter_name(own.filter);
         let maps = match own.cascades {
             1 => format!("{}²", own.map_size),
-            _ if own.layout == CascadeLayout::Automatic => format!("{}², divided", own.map_size),
+            _ if own.divides_map => format!("{}², divided", own.map_size),
             count => format!("{count} × {}²", own.map_size),
         };
         let covers = if own.covers == Covers::Scene {

@@ -1,7 +1,7 @@
 //! Holds everything that a person sets: what the address of the page keeps.
 
 use glam::Vec3;
-use wgpu_shadows::{Bias, CascadeLayout, CascadeSplit, DepthFormat, Filter, Stability};
+use wgpu_shadows::{Bias, CascadeSplit, DepthFormat, Filter, Stability};
 
 use crate::viewpoint::Viewpoint;
 
@@ -59,9 +59,12 @@ pub struct SideSettings {
     /// Is the distance from the camera at which shadows end, in world units; 0 for no end.
     pub max_distance: f32,
     pub map_size: u32,
-    /// Is the number of cascades, or the largest one where the layout is found.
+    /// Is the number of cascades, or the largest one where they divide one map.
     pub cascades: u32,
-    pub layout: CascadeLayout,
+    /// States that one map is divided among the cascades by predicted error; otherwise each has a
+    /// map of its own.
+    pub divides_map: bool,
+    /// Selects where cascades with maps of their own end.
     pub split: CascadeSplit<'static>,
     /// Is the filter; the light size of a filter with penumbrae is that of the sun, whatever is
     /// written here.
@@ -86,14 +89,14 @@ pub enum Covers {
 }
 
 impl SideSettings {
-    /// Are the library's defaults, with the number of cascades that a scene needs.
-    pub const fn library(cascades: u32) -> Self {
+    /// Are the library's defaults.
+    pub const fn library() -> Self {
         Self {
             covers: Covers::Camera,
             max_distance: 0.0,
             map_size: 2048,
-            cascades,
-            layout: CascadeLayout::Fixed,
+            cascades: 4,
+            divides_map: true,
             split: CascadeSplit::Logarithmic,
             filter: Filter::Tent3 { sharpness: 3.0 },
             bias: Bias::Auto,
@@ -113,13 +116,15 @@ impl SideSettings {
         Self {
             covers: Covers::Scene,
             map_size: 1024,
+            cascades: 1,
+            divides_map: false,
             filter: Filter::Box,
             bias: Bias::Manual {
                 constant: 0.005 * depth_range_world,
                 slope: 0.05 * depth_range_world,
             },
             lamp_filter: Filter::DirectionGrid { radius: 0.1 },
-            ..Self::library(1)
+            ..Self::library()
         }
     }
 }

@@ -8,9 +8,9 @@ use shadow_support::probe::Point;
 use shadow_support::random::Random;
 use wgpu_shadows::reference::receiver;
 use wgpu_shadows::{
-    Aabb, Bias, CascadeSplit, DirectionalLight, DirectionalShadowDescriptor, Filter, OmniLight,
-    ShadowCaster, SpotLight, pool::OmniShadowPool, pool::PoolDescriptor, pool::PoolLight,
-    pool::SpotShadowPool,
+    Aabb, Bias, CascadeLayout, CascadeSplit, DirectionalLight, DirectionalShadowDescriptor, Filter,
+    OmniLight, ShadowCaster, SpotLight, pool::OmniShadowPool, pool::PoolDescriptor,
+    pool::PoolLight, pool::SpotShadowPool,
 };
 
 use super::stage::{SUM_ERROR, Sun, differ, scene};
@@ -44,8 +44,10 @@ fn receivers_beyond_every_cascade_are_lit() {
         ] {
             let mut sun = Sun::new(&DirectionalShadowDescriptor {
                 map_size: 128,
-                cascades,
-                split: CascadeSplit::Practical { lambda: 0.8 },
+                layout: CascadeLayout::Fixed {
+                    cascades,
+                    split: CascadeSplit::Practical { lambda: 0.8 },
+                },
                 filter,
                 ..Default::default()
             });

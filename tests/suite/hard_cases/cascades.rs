@@ -4,7 +4,7 @@ use glam::DVec3;
 use shadow_support::camera::Camera;
 use shadow_support::mesh::Mesh;
 use wgpu_shadows::reference::receiver;
-use wgpu_shadows::{Bias, CascadeSplit, DirectionalShadowDescriptor, Filter};
+use wgpu_shadows::{Bias, CascadeLayout, CascadeSplit, DirectionalShadowDescriptor, Filter};
 
 use super::stage::{MARGIN, Sun, Verdict, bounds_of, boxes, level, scene, shining, world};
 use super::table;
@@ -53,8 +53,7 @@ fn layer_of(sun: &Sun, place: DVec3) -> Option<usize> {
 fn cascaded(cascades: u32, split: CascadeSplit, world: &World, meshes: &[Mesh]) -> Sun {
     let mut sun = Sun::new(&DirectionalShadowDescriptor {
         map_size: 256,
-        cascades,
-        split,
+        layout: CascadeLayout::Fixed { cascades, split },
         ..Default::default()
     });
     let floor = Mesh::floor(0.0, 80.0).bounds();

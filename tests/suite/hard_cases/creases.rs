@@ -6,7 +6,7 @@ use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use shadow_support::random::Random;
 use shadow_support::triangle::Triangle;
-use wgpu_shadows::{Aabb, Bias, DirectionalShadowDescriptor, Filter};
+use wgpu_shadows::{Aabb, Bias, CascadeLayout, DirectionalShadowDescriptor, Filter};
 
 use super::stage::{Sun, scene, shining};
 use super::table;
@@ -126,6 +126,7 @@ fn false_shadows(signs: f64, filter: Filter, bias: Bias) -> (Vec<(f64, String)>,
         map_size: 128,
         filter,
         bias,
+        layout: CascadeLayout::fixed(1),
         ..Default::default()
     });
     let (mut found, mut asked) = (Vec::new(), 0);

@@ -5,8 +5,8 @@ use shadow_support::camera::Camera;
 use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use wgpu_shadows::{
-    Aabb, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, ShadowError,
-    report::ViewStatus,
+    Aabb, CascadeLayout, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
+    ShadowError, report::ViewStatus,
 };
 
 use super::stage::{Sun, caster};
@@ -172,6 +172,7 @@ fn maps_of_every_size() {
     let new = |map_size| {
         let descriptor = DirectionalShadowDescriptor {
             map_size,
+            layout: CascadeLayout::fixed(1),
             ..Default::default()
         };
         DirectionalShadow::new(&gpu.device, &descriptor)

@@ -1,7 +1,7 @@
 //! Compares the same scenes in maps of 32 and of 16 bits, over short and long depth ranges.
 
 use glam::{DMat3, DVec3};
-use wgpu_shadows::{Aabb, DepthFormat, DirectionalShadowDescriptor};
+use wgpu_shadows::{Aabb, CascadeLayout, DepthFormat, DirectionalShadowDescriptor};
 
 use super::stage::{
     MARGIN, Sun, Verdict, any_camera, bounds_of, boxes, differ, level, meshes, scene, shining,
@@ -40,6 +40,7 @@ fn both_depth_formats_give_the_same_picture() {
             let mut sun = Sun::new(&DirectionalShadowDescriptor {
                 map_size: 512,
                 depth_format,
+                layout: CascadeLayout::fixed(1),
                 ..Default::default()
             });
             let coverage = Coverage::Bounds(bounds_of(&meshes));
@@ -91,6 +92,7 @@ fn long_depth_ranges_keep_their_shadows() {
             let mut sun = Sun::new(&DirectionalShadowDescriptor {
                 map_size: 1024,
                 depth_format,
+                layout: CascadeLayout::fixed(1),
                 ..Default::default()
             });
             let coverage = down_to(range, bounds_of(&meshes));

@@ -2,7 +2,9 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use shadow_support::camera::{Camera, Lens, Pose};
-use wgpu_shadows::{CascadeSplit, DirectionalLight, DirectionalShadowDescriptor, ShadowError};
+use wgpu_shadows::{
+    CascadeLayout, CascadeSplit, DirectionalLight, DirectionalShadowDescriptor, ShadowError,
+};
 
 use super::stage::{Sun, boxes, level, meshes, scene};
 use super::table;
@@ -60,8 +62,10 @@ fn any_lens_is_fitted_or_refused() {
     let scene = scene(&meshes(&boxes(), 8.0, glam::DMat3::IDENTITY, DVec3::ZERO));
     let mut sun = Sun::new(&DirectionalShadowDescriptor {
         map_size: 64,
-        cascades: 3,
-        split: CascadeSplit::Practical { lambda: 0.7 },
+        layout: CascadeLayout::Fixed {
+            cascades: 3,
+            split: CascadeSplit::Practical { lambda: 0.7 },
+        },
         ..Default::default()
     });
     let places: Vec<_> = (0..64)

@@ -5,7 +5,8 @@ use glam::{DMat3, DVec3};
 use shadow_support::probe::Point;
 use shadow_support::random::Random;
 use wgpu_shadows::{
-    Aabb, DepthFormat, DirectionalLight, DirectionalShadowDescriptor, ShadowViewUniform,
+    Aabb, CascadeLayout, DepthFormat, DirectionalLight, DirectionalShadowDescriptor,
+    ShadowViewUniform,
 };
 
 use super::stage::{
@@ -33,6 +34,7 @@ fn look_along(
     let mut sun = Sun::new(&DirectionalShadowDescriptor {
         map_size: MAP_SIZE,
         depth_format,
+        layout: CascadeLayout::fixed(1),
         ..Default::default()
     });
     // The width is 15 under 249 usable texels: 0.0602 each, for which the next size is 1/16; the

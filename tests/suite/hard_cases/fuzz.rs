@@ -53,13 +53,16 @@ fn any_descriptor_is_taken_or_refused() {
             let sun = DirectionalShadowDescriptor {
                 label: None,
                 map_size,
-                cascades: count,
                 layout: if cascade_split == 3 {
-                    CascadeLayout::Automatic
+                    CascadeLayout::Automatic {
+                        max_cascades: count,
+                    }
                 } else {
-                    CascadeLayout::Fixed
+                    CascadeLayout::Fixed {
+                        cascades: count,
+                        split,
+                    }
                 },
-                split,
                 filter,
                 bias,
                 fade: if cascade_split == 0 { lambda } else { 0.5 },
@@ -128,7 +131,7 @@ impl Lights {
             device,
             &DirectionalShadowDescriptor {
                 map_size,
-                cascades: 2,
+                layout: CascadeLayout::fixed(2),
                 ..Default::default()
             },
         );
@@ -136,8 +139,10 @@ impl Lights {
             device,
             &DirectionalShadowDescriptor {
                 map_size,
-                cascades: 3,
-                split: CascadeSplit::Explicit { ends: &[2.0, 10.0] },
+                layout: CascadeLayout::Fixed {
+                    cascades: 3,
+                    split: CascadeSplit::Explicit { ends: &[2.0, 10.0] },
+                },
                 blend: 0.2,
                 stability: Stability::BoundingSphere,
                 ..Default::default()

@@ -112,21 +112,17 @@ impl Untidy {
             .chain(wild.iter().map(|caster| caster as &dyn ShadowCaster))
             .collect();
         let camera = Camera::modern(self.eye, DVec3::new(0.0, 0.3, 0.0), 0.9, 1.6);
-        // Finite bounds of such a size cost more texels than one cascade has.
-        let (cascades, max_distance) = match self.wild {
-            Some(value) if value.is_finite() => (4, 100.0),
-            _ => (1, f32::INFINITY),
-        };
-        let mut sun = Sun::new(&DirectionalShadowDescriptor {
-            cascades,
-            ..Default::default()
-        });
+        // Bounds of such a size are covered as far as the camera sees.
+        let is_huge = self.wild.is_some_and(f32::is_finite);
+        let max_distance = if is_huge { 100.0 } else { f32::INFINITY };
+        let mut sun = Sun::new(&DirectionalShadowDescriptor::default());
         let coverage = Coverage::Camera(camera.view().with_max_distance(max_distance));
         let report = sun.record(DVec3::ZERO, shining(self.light), coverage, &list, &[]);
         let coarseness = |position: DVec3| {
-            if cascades == 1 {
+            if !is_huge {
                 // The boxes extend over three metres and their shadows over twelve metres at most,
-                // so that a map of 2048 texels has texels of 7 mm.
+                // so that one cascade of 2048 texels has texels of 7 mm; more are used where that
+                // makes them finer.
                 return Some(Coarseness {
                     texel: 0.007,
                     gap: 0.0,
@@ -198,7 +194,7 @@ fn untidy_scenes_are_shadowed_as_the_truth_says() {
     let all = all.into_inner();
     assert!(all.dark > 500 && all.lit > 5000, "{all:?}");
     table::record(
-        "random grounds of half side 1 to 1e5, sheets and slabs, sunk feet, domes, one object with broken bounds or, under four cascades, with bounds of +-1e5 to +-1e9, everything else default",
+        "random grounds of half side 1 to 1e5, sheets and slabs, sunk feet, domes, one object with broken bounds or with bounds of +-1e5 to +-1e9, everything else default",
         "settled receivers as the truth says",
         all.words(),
     );

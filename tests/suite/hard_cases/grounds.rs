@@ -7,7 +7,9 @@ use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use shadow_support::random::Random;
 use shadow_support::triangle::{Triangle, occluded};
-use wgpu_shadows::{Aabb, DirectionalShadowDescriptor, MeshCaster, ShadowCaster, Stability};
+use wgpu_shadows::{
+    Aabb, CascadeLayout, DirectionalShadowDescriptor, MeshCaster, ShadowCaster, Stability,
+};
 
 use super::stage::{SUM_ERROR, Sun, Verdict, differ, settled, shaped, shining};
 use super::table;
@@ -164,7 +166,7 @@ fn a_giant_ground_is_lit() {
             for (coverage, cascades, reach) in coverages {
                 let mut sun = Sun::new(&DirectionalShadowDescriptor {
                     map_size: 1024,
-                    cascades,
+                    layout: CascadeLayout::fixed(cascades),
                     ..Default::default()
                 });
                 sun.record(
@@ -275,7 +277,7 @@ fn one_wild_box_leaves_other_shadows_in_place() {
         let mut list = listed(&casters);
         list.push(&wild);
         let mut sun = Sun::new(&DirectionalShadowDescriptor {
-            cascades: 4,
+            layout: CascadeLayout::fixed(4),
             ..Default::default()
         });
         let coverage = Coverage::Camera(limited);
@@ -322,6 +324,7 @@ fn an_orthographic_camera_may_be_far_away() {
             };
             let mut sun = Sun::new(&DirectionalShadowDescriptor {
                 stability,
+                layout: CascadeLayout::fixed(1),
                 ..Default::default()
             });
             let coverage = Coverage::Camera(camera.view());

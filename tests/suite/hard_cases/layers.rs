@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use shadow_support::random::Random;
-use wgpu_shadows::{Aabb, Bias, DirectionalShadowDescriptor, Filter};
+use wgpu_shadows::{Aabb, Bias, CascadeLayout, DirectionalShadowDescriptor, Filter};
 
 use super::stage::{SUM_ERROR, Sun, scene, shining};
 use super::table;
@@ -25,6 +25,7 @@ fn nothing_leaks_through_a_stack() {
                 map_size: 256,
                 filter,
                 bias,
+                layout: CascadeLayout::fixed(1),
                 ..Default::default()
             });
             for light in [

@@ -8,11 +8,12 @@ use shadow_support::camera::Camera;
 use shadow_support::mesh::Mesh;
 use wgpu::util::DeviceExt;
 use wgpu_shadows::{
-    Aabb, CasterPipeline, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowBindings,
-    ShadowBindingsDescriptor, ShadowCaster, SpotLight, SpotShadow, SpotShadowDescriptor,
-    caster::CasterPipelineDescriptor, caster::MeshCasterDescriptor, caster::MeshIndices,
-    pool::PoolDescriptor, pool::PoolLight, pool::ShadowSlot, pool::SpotShadowPool,
+    Aabb, CascadeLayout, CasterPipeline, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor,
+    ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, SpotLight, SpotShadow,
+    SpotShadowDescriptor, caster::CasterPipelineDescriptor, caster::MeshCasterDescriptor,
+    caster::MeshIndices, pool::PoolDescriptor, pool::PoolLight, pool::ShadowSlot,
+    pool::SpotShadowPool,
 };
 
 use super::table;
@@ -95,7 +96,7 @@ impl Lights {
             device,
             &DirectionalShadowDescriptor {
                 map_size,
-                cascades: 2,
+                layout: CascadeLayout::fixed(2),
                 ..Default::default()
             },
         );

@@ -189,12 +189,12 @@ fn still_shadows_stay_still_beside_moving_casters() {
         };
         let fixed = DirectionalShadowDescriptor {
             map_size: 512,
+            layout: CascadeLayout::fixed(1),
             ..Default::default()
         };
         words.push(changes(&fixed).few(motion.name));
         let automatic = DirectionalShadowDescriptor {
-            cascades: 4,
-            layout: CascadeLayout::Automatic,
+            layout: CascadeLayout::Automatic { max_cascades: 4 },
             ..fixed
         };
         changes(&automatic).few(motion.name);

@@ -6,7 +6,7 @@ use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use shadow_support::random::Random;
 use wgpu_shadows::{
-    Aabb, CascadeSplit, CasterPipeline, DirectionalLight, DirectionalShadow,
+    Aabb, CascadeLayout, CascadeSplit, CasterPipeline, DirectionalLight, DirectionalShadow,
     DirectionalShadowDescriptor, MeshCaster, ShadowCaster, caster::caster_shape,
     report::ShadowReport,
 };
@@ -45,6 +45,7 @@ impl Sun {
     pub fn of_size(map_size: u32) -> Self {
         Self::new(&DirectionalShadowDescriptor {
             map_size,
+            layout: CascadeLayout::fixed(1),
             ..Default::default()
         })
     }

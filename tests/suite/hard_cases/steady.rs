@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::{DMat3, DVec3};
 use shadow_support::camera::Camera;
-use wgpu_shadows::{CascadeSplit, DirectionalShadowDescriptor, ShadowView};
+use wgpu_shadows::{CascadeLayout, CascadeSplit, DirectionalShadowDescriptor, ShadowView};
 
 use super::stage::{Sun, boxes, differ, level, meshes, scene, shining, world};
 use super::table;
@@ -136,8 +136,10 @@ fn windows_rarely_change_in_a_walk_through_a_town() {
     let scene = scene(&town(29));
     let mut sun = Sun::new(&DirectionalShadowDescriptor {
         map_size: 256,
-        cascades: 4,
-        split: CascadeSplit::Logarithmic,
+        layout: CascadeLayout::Fixed {
+            cascades: 4,
+            split: CascadeSplit::Logarithmic,
+        },
         ..Default::default()
     });
     let mut last = [None; 4];

@@ -5,7 +5,7 @@ use glam::{DMat2, DVec2, DVec3, Vec2, Vec3};
 use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use shadow_support::random::Random;
-use wgpu_shadows::{Aabb, DirectionalShadowDescriptor, Filter};
+use wgpu_shadows::{Aabb, CascadeLayout, DirectionalShadowDescriptor, Filter};
 
 use super::stage::{Sun, scene, shining};
 use super::table;
@@ -103,6 +103,7 @@ fn thin_casters_are_caught_in_proportion_to_their_width() {
     let mut sun = Sun::new(&DirectionalShadowDescriptor {
         map_size: 512,
         filter: Filter::Nearest,
+        layout: CascadeLayout::fixed(1),
         ..Default::default()
     });
     for turned in [false, true] {

@@ -7,7 +7,7 @@ use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use shadow_support::random::Random;
 use wgpu_shadows::{
-    Aabb, Bias, CasterPipeline, DirectionalShadowDescriptor, Filter, ShadowCaster,
+    Aabb, Bias, CascadeLayout, CasterPipeline, DirectionalShadowDescriptor, Filter, ShadowCaster,
     caster::CasterPipelineDescriptor,
 };
 
@@ -144,6 +144,7 @@ fn shadows_begin_at_the_foot_of_a_wall() {
                     map_size: 256,
                     filter,
                     bias,
+                    layout: CascadeLayout::fixed(1),
                     ..Default::default()
                 });
                 let mut random = Random::new(71);

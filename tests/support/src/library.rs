@@ -3,10 +3,11 @@
 use std::error::Error;
 
 use wgpu_shadows::{
-    Bias, Casters, Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor,
-    Filter, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor, ShadowBindings,
-    ShadowBindingsDescriptor, ShadowCaster, ShadowError, ShadowFrameDescriptor, ShadowScene,
-    SpotLight, SpotShadow, SpotShadowDescriptor, report::ShadowReport, report::ViewStatus,
+    Bias, CascadeLayout, Casters, Coverage, DirectionalLight, DirectionalShadow,
+    DirectionalShadowDescriptor, Filter, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor,
+    ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowError, ShadowFrameDescriptor,
+    ShadowScene, SpotLight, SpotShadow, SpotShadowDescriptor, report::ShadowReport,
+    report::ViewStatus,
 };
 
 use crate::gpu::Gpu;
@@ -23,8 +24,8 @@ pub struct LibraryOptions {
     pub map_size: u32,
     /// States that maps cover what the camera sees; otherwise they cover the bounds of the scene.
     pub fits_camera: bool,
-    /// Is the number of cascades of a sun; other lights ignore it.
-    pub cascades: u32,
+    /// Is the layout of a sun's cascades; other lights ignore it.
+    pub layout: CascadeLayout<'static>,
 }
 
 /// Holds the meshes of a scene as casters.
@@ -109,7 +110,7 @@ fn create_shadow(
         filter,
         bias,
         map_size,
-        cascades,
+        layout,
         ..
     } = *options;
     Ok(match scene.light {
@@ -117,7 +118,7 @@ fn create_shadow(
             let descriptor = DirectionalShadowDescriptor {
                 label: None,
                 map_size,
-                cascades,
+                layout,
                 filter,
                 bias,
                 ..DirectionalShadowDescriptor::default()
@@ -222,21 +223,18 @@ impl Technique for LibraryTechnique<'_> {
     }
 
     fn cost(&self) -> Cost {
-        let texels_per_layer = u64::from(self.options.map_size).pow(2);
-        let drawn = self
-            .report
-            .views
-            .iter()
-            .filter(|view| view.status == ViewStatus::Drawn);
+        let views = self.report.views.iter();
+        let drawn = views.filter(|view| view.status == ViewStatus::Drawn);
+        let texels = drawn.map(|view| view.texels.size.as_u64vec2().element_product());
         Cost {
             texels_allocated: self.report.bytes_held / 4,
-            texels_cleared: texels_per_layer * drawn.count() as u64,
+            texels_cleared: texels.sum(),
             draws: self.report.draws(),
             passes: self.report.passes,
             bytes: self.report.bytes_held,
             lookup_cycles: lookup_cost::library(
                 &self.scene.light,
-                self.options.cascades,
+                self.options.layout,
                 self.options.filter,
                 self.options.bias,
             ),

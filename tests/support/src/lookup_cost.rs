@@ -8,7 +8,7 @@
 use std::sync::LazyLock;
 
 use shadow_isa::Table;
-use wgpu_shadows::{Bias, Filter};
+use wgpu_shadows::{Bias, CascadeLayout, Filter};
 
 use crate::compositions;
 use crate::scene::Light;
@@ -20,9 +20,9 @@ pub const FAMILY: &str = "NAVI21";
 const WAVE: f64 = 32.0;
 
 /// Returns the cycles per pixel of a lookup by the library.
-pub fn library(light: &Light, cascades: u32, filter: Filter, bias: Bias) -> f64 {
+pub fn library(light: &Light, layout: CascadeLayout<'_>, filter: Filter, bias: Bias) -> f64 {
     let kind = match light {
-        Light::Sun { .. } => format!("sun_{cascades}"),
+        Light::Sun { .. } => format!("sun_{}", most_cascades(layout)),
         Light::Spot { .. } => "spot".to_owned(),
         Light::Point { .. } => "point".to_owned(),
     };
@@ -67,4 +67,13 @@ fn of(composition: &str) -> f64 {
         panic!("doc/lookup_cost.csv has no {composition} on {FAMILY}");
     };
     row.figures.inverse_throughput as f64 / WAVE
+}
+
+/// Returns the number of cascades among which a lookup chooses.
+pub fn most_cascades(layout: CascadeLayout<'_>) -> u32 {
+    match layout {
+        CascadeLayout::Automatic { max_cascades } => max_cascades,
+        CascadeLayout::Fixed { cascades, .. } => cascades,
+        _ => 1,
+    }
 }

@@ -13,8 +13,6 @@ pub struct Scene {
     pub camera: CameraView,
     /// Is the world position of render space's origin.
     pub origin: DVec3,
-    /// Is the number of cascades that the library uses; lights other than suns ignore it.
-    pub cascades: u32,
 }
 
 /// Is the angular diameter of the sun: 0.533 degrees.

@@ -91,7 +91,7 @@ fn of(loaded: Loaded, name: &str) -> Result<Scene, String> {
     }
     Ok(Scene {
         extent: diameter,
-        sides: [SideSettings::textbook(diameter), SideSettings::library(4)],
+        sides: [SideSettings::textbook(diameter), SideSettings::library()],
         notes,
         ..day(name, models, viewpoint, toward_sun)
     })

@@ -31,7 +31,7 @@ pub fn scene() -> Scene {
             haze: f32::INFINITY,
         },
         extent: 26.0,
-        sides: [SideSettings::textbook(9.0), SideSettings::library(1)],
+        sides: [SideSettings::textbook(9.0), SideSettings::library()],
         has_lamps: true,
         ..day("hall", models, viewpoint, TOWARD_SUN)
     }

@@ -213,7 +213,7 @@ fn day(name: &str, models: Vec<Model>, viewpoint: Viewpoint, toward_sun: Vec3) -
         sun_degrees: SUN_DEGREES,
         light: Light::DAY,
         extent: 20.0,
-        sides: [SideSettings::textbook(10.0), SideSettings::library(1)],
+        sides: [SideSettings::textbook(10.0), SideSettings::library()],
         has_lamps: false,
         notes: Vec::new(),
     }

@@ -52,7 +52,7 @@ pub fn scene() -> Scene {
     let viewpoint = Viewpoint::new(Vec3::new(0.4, 7.2, 15.0), Vec3::new(0.2, 0.6, -0.4), 0.72);
     let soft = SideSettings {
         filter: Filter::Pcss { light_size: 0.0 },
-        ..SideSettings::library(1)
+        ..SideSettings::library()
     };
     Scene {
         sun_degrees: 3.0,

@@ -49,7 +49,7 @@ pub fn scene() -> Scene {
             ..Light::DAY
         },
         extent: 200.0,
-        sides: [SideSettings::textbook(10_000.0), SideSettings::library(4)],
+        sides: [SideSettings::textbook(10_000.0), SideSettings::library()],
         ..day("sky", models, viewpoint, Vec3::new(-0.65, 0.42, 0.25))
     }
 }

@@ -25,7 +25,7 @@ pub fn scene() -> Scene {
     Scene {
         sun_degrees: 0.0,
         extent: 10.0,
-        sides: [textbook, SideSettings::library(1)],
+        sides: [textbook, SideSettings::library()],
         ..day("textbook", models, viewpoint, TOWARD_SUN)
     }
 }

@@ -36,7 +36,7 @@ pub fn scene() -> Scene {
             ..Light::DAY
         },
         extent: 300.0,
-        sides: [SideSettings::textbook(140.0), SideSettings::library(4)],
+        sides: [SideSettings::textbook(140.0), SideSettings::library()],
         ..day("town", models, viewpoint, Vec3::new(0.10, 0.62, 0.80))
     }
 }

@@ -1,7 +1,7 @@
 //! Shows the settings of one side's shadows.
 
 use egui::{ComboBox, DragValue, Slider, Ui};
-use wgpu_shadows::{Bias, CascadeLayout, CascadeSplit, DepthFormat, Filter, Stability};
+use wgpu_shadows::{Bias, CascadeSplit, DepthFormat, Filter, Stability};
 
 use crate::scene::Scene;
 use crate::settings::{Covers, SideSettings};
@@ -22,12 +22,12 @@ pub fn show(ui: &mut Ui, state: &mut State, scene: &Scene) {
     if side.cascades > 1 {
         ui.horizontal(|ui| {
             ui.label("layout");
-            ui.selectable_value(&mut side.layout, CascadeLayout::Fixed, "fixed")
+            ui.selectable_value(&mut side.divides_map, false, "fixed")
                 .on_hover_text("A map for each cascade.");
-            ui.selectable_value(&mut side.layout, CascadeLayout::Automatic, "found")
+            ui.selectable_value(&mut side.divides_map, true, "found")
                 .on_hover_text("One map, divided among the cascades by predicted error.");
         });
-        if side.layout == CascadeLayout::Fixed {
+        if !side.divides_map {
             split(ui, &mut side.split);
         }
         ui.add(Slider::new(&mut side.blend, 0.0..=0.5).text("blend"));

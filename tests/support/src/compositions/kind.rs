@@ -4,8 +4,9 @@ use std::error::Error;
 
 use wgpu_shadows::pool::{OmniShadowPool, PoolDescriptor, SpotShadowPool};
 use wgpu_shadows::{
-    Bias, DirectionalShadow, DirectionalShadowDescriptor, Filter, OmniShadow, OmniShadowDescriptor,
-    ShadowBindings, ShadowBindingsDescriptor, ShadowMaps, SpotShadow, SpotShadowDescriptor,
+    Bias, CascadeLayout, DirectionalShadow, DirectionalShadowDescriptor, Filter, OmniShadow,
+    OmniShadowDescriptor, ShadowBindings, ShadowBindingsDescriptor, ShadowMaps, SpotShadow,
+    SpotShadowDescriptor,
 };
 
 use crate::gpu::Gpu;
@@ -138,7 +139,7 @@ impl Light {
         let sun = |cascades, blend| {
             let descriptor = DirectionalShadowDescriptor {
                 map_size,
-                cascades,
+                layout: CascadeLayout::fixed(cascades),
                 blend,
                 filter,
                 bias,

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use wgpu_shadows::{Bias, DirectionalShadowDescriptor, Filter};
+use wgpu_shadows::{Bias, CascadeLayout, DirectionalShadowDescriptor, Filter};
 
 use super::chart::Mark;
 use crate::scene::{Light, SUN_DIAMETER_RADIANS};
@@ -16,8 +16,8 @@ pub struct Configuration {
     pub map_size: u32,
     /// States that maps cover what the camera sees; otherwise they cover the whole scene.
     pub fits_camera: bool,
-    /// Is the number of cascades of a sun; `None` for as many as the scene needs.
-    pub cascades: Option<u32>,
+    /// Is the layout of a sun's cascades; other lights ignore it.
+    pub layout: CascadeLayout<'static>,
 }
 
 /// Selects how shadows are made.
@@ -56,9 +56,8 @@ impl Configuration {
         Self::shipped(&DirectionalShadowDescriptor::default())
     }
 
-    /// Returns the configuration of a descriptor of the library, for a camera, with as many
-    /// cascades as the scene needs.
-    pub fn shipped(descriptor: &DirectionalShadowDescriptor<'_>) -> Self {
+    /// Returns the configuration of a descriptor of the library, for a camera.
+    pub fn shipped(descriptor: &DirectionalShadowDescriptor<'static>) -> Self {
         Self {
             method: Method::Library {
                 filter: descriptor.filter,
@@ -66,7 +65,7 @@ impl Configuration {
             },
             map_size: descriptor.map_size,
             fits_camera: true,
-            cascades: None,
+            layout: descriptor.layout,
         }
     }
 
@@ -75,7 +74,7 @@ impl Configuration {
         method: Method::Textbook,
         map_size: 1024,
         fits_camera: false,
-        cascades: None,
+        layout: CascadeLayout::fixed(1),
     };
 
     /// Returns what the library recommends, cheapest first, by the name it has there.
@@ -134,7 +133,11 @@ impl Configuration {
 
     /// Returns the settings without the map's size.
     pub fn series(&self) -> String {
-        let coverage = if self.fits_camera { "camera" } else { "scene" };
+        let coverage = match (self.fits_camera, self.layout) {
+            (true, CascadeLayout::Automatic { .. }) => "camera",
+            (true, _) => "camera, 1 cascade",
+            (false, _) => "scene",
+        };
         match self.method {
             Method::Textbook => "textbook".to_owned(),
             Method::TextbookStar => "textbook, 20 directions".to_owned(),
@@ -201,20 +204,25 @@ pub fn all(extent: Extent, map_sizes: &[u32]) -> Vec<Configuration> {
     }
     let mut all = Vec::new();
     for &map_size in map_sizes {
-        for fits_camera in [true, false] {
-            all.extend(methods.iter().map(|&method| Configuration {
+        let found = CascadeLayout::default();
+        let single = CascadeLayout::fixed(1);
+        for (fits_camera, layout) in [(true, found), (true, single), (false, single)] {
+            let own = methods.iter().map(|&method| Configuration {
                 method,
                 map_size,
                 fits_camera,
-                cascades: None,
-            }));
+                layout,
+            });
+            // Other biases are compared under one layout for each kind of coverage.
+            all.extend(
+                own.filter(|own| own.has_derived_bias() || !fits_camera || layout != single),
+            );
         }
         for method in [Method::Textbook, Method::TextbookStar] {
             all.push(Configuration {
                 method,
                 map_size,
-                fits_camera: false,
-                cascades: None,
+                ..Configuration::BASELINE
             });
         }
     }

@@ -201,7 +201,7 @@ impl<'a> Subject<'a> {
                     bias,
                     map_size,
                     fits_camera: configuration.fits_camera,
-                    cascades: configuration.cascades.unwrap_or(scene.cascades),
+                    layout: configuration.layout,
                 };
                 Box::new(LibraryTechnique::new(gpu, scene, &self.casters, options)?)
             }
