@@ -26,7 +26,14 @@ pub fn cascades(stage: &Stage<'_>) {
     let cameras = [stage::to_the_horizon(crowd::half_side(2_000))];
     let mut table = Growth::new(
         "sun, 1024 texels a side, 2000 casters: a frame against cascades (device time as a ratio to one cascade)",
-        &["cascades", "CPU µs", "allocs", "draws", "device ratio"],
+        &[
+            "cascades",
+            "CPU µs",
+            "allocs",
+            "draws",
+            "Mtexels",
+            "device ratio",
+        ],
     );
     let frame = frame(&list, Coverage::Cameras(&cameras));
     let mut single = stage.sun(1024, 1, Filter::default());
@@ -43,6 +50,7 @@ pub fn cascades(stage: &Stage<'_>) {
                 effort.microseconds,
                 effort.allocations,
                 f64::from(sun.shadow.maps().report().draws()),
+                sun.shadow.maps().report().texels() as f64 * 1e-6,
                 ratio.median,
             ],
         );

@@ -68,6 +68,7 @@ fn measure<L: Lit>(stage: &Stage<'_>, title: &str, make: impl Fn() -> L) {
             "passes",
             "draws",
             "copied",
+            "Mtexels",
             "device ratio",
         ],
     );
@@ -98,6 +99,7 @@ fn measure<L: Lit>(stage: &Stage<'_>, title: &str, make: impl Fn() -> L) {
                 f64::from(counts.passes),
                 f64::from(counts.draws),
                 f64::from(counts.copied),
+                counts.texels as f64 * 1e-6,
                 ratio.median,
             ],
         );

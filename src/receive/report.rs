@@ -160,6 +160,16 @@ impl ShadowReport {
             .fold(0, u64::saturating_add)
     }
 
+    /// Returns the number of texels of the maps that were cleared and drawn again: those in the
+    /// rectangles of the views that were drawn. Together with the triangles it tells, on any
+    /// device, what the depth passes of a frame have to do. A static-caster cache that was drawn
+    /// first adds as many again, and is not counted.
+    pub fn texels(&self) -> u64 {
+        self.drawn()
+            .map(|view| view.texels.size.as_u64vec2().element_product())
+            .fold(0, u64::saturating_add)
+    }
+
     fn drawn(&self) -> impl Iterator<Item = &ViewReport> {
         self.views
             .iter()
@@ -177,6 +187,7 @@ mod tests {
             status: ViewStatus::Drawn,
             draws,
             triangles: u64::MAX,
+            texels: TexelRect::whole(u32::MAX),
             ..ViewReport::empty(0, 0)
         };
         let report = ShadowReport {
@@ -188,5 +199,6 @@ mod tests {
         };
         assert_eq!(report.draws(), u32::MAX);
         assert_eq!(report.triangles(), u64::MAX);
+        assert_eq!(report.texels(), u64::MAX);
     }
 }

@@ -47,7 +47,7 @@ fn no_unit_is_special() {
     assert!(largest / least <= 1.19 * (1.0 + 1e-3), "{sizes:?}");
     table::record(
         "units of 1e-6 to 1e9",
-        "settled receivers as the truth says, texels within a rung of 1.19",
+        "settled receivers as the truth says, texels within a size step of 1.19",
         format!("{}, texels within {:.3}", all.words(), largest / least),
     );
 }

@@ -7,7 +7,6 @@ use wgpu_shadows::{
     DirectionalShadowDescriptor, Filter, MeshCaster, OmniLight, OmniShadow, OmniShadowDescriptor,
     ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowError, ShadowFrameDescriptor,
     ShadowScene, SpotLight, SpotShadow, SpotShadowDescriptor, report::ShadowReport,
-    report::ViewStatus,
 };
 
 use crate::gpu::Gpu;
@@ -223,12 +222,9 @@ impl Technique for LibraryTechnique<'_> {
     }
 
     fn cost(&self) -> Cost {
-        let views = self.report.views.iter();
-        let drawn = views.filter(|view| view.status == ViewStatus::Drawn);
-        let texels = drawn.map(|view| view.texels.size.as_u64vec2().element_product());
         Cost {
             texels_allocated: self.report.bytes_held / 4,
-            texels_cleared: texels.sum(),
+            texels_cleared: self.report.texels(),
             draws: self.report.draws(),
             passes: self.report.passes,
             bytes: self.report.bytes_held,
