@@ -3,25 +3,13 @@
 //
 //     node viewer.mjs FOLDER_OF_THE_PAGE FOLDER_OF_PICTURES [SCENE...]
 
-import { mkdir, readFile } from 'node:fs/promises';
+import { mkdir } from 'node:fs/promises';
 import { join } from 'node:path';
 import { withPage } from './chromium.mjs';
+import { serving } from './serving.mjs';
 
 const [folder, pictures, ...wanted] = process.argv.slice(2);
 const scenes = wanted.length ? wanted : ['textbook', 'town', 'hall', 'penumbrae', 'sky'];
-const TYPES = { html: 'text/html', js: 'text/javascript', wasm: 'application/wasm' };
-
-async function answer(request, response) {
-  const name = new URL(request.url, 'http://localhost').pathname.slice(1) || 'index.html';
-  if (!/^[\w.]+$/.test(name)) return response.writeHead(404).end();
-  const type = TYPES[name.split('.').pop()] ?? 'application/octet-stream';
-  try {
-    const body = await readFile(join(folder, name));
-    response.writeHead(200, { 'content-type': type }).end(body);
-  } catch {
-    response.writeHead(404).end();
-  }
-}
 
 await mkdir(pictures, { recursive: true });
 const failures = await withPage(async (page, problems) => {
@@ -41,7 +29,7 @@ const failures = await withPage(async (page, problems) => {
     console.log(`${scene}: ${await page.evaluate(() => location.hash)}`);
   }
   return problems;
-}, answer);
+}, serving(folder));
 
 for (const failure of failures) console.error(failure);
 console.log(`${scenes.length} scenes, ${failures.length} failures`);
