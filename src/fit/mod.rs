@@ -25,7 +25,8 @@
 //! cascade_layout.rs  how texels may be divided among cascades
 //! layout.rs       the layout of a light, from frame to frame
 //! layout_choice.rs  the layout with the least predicted error; layout_samples.rs: what predicts it;
-//!                 predicted_error.rs: how; layout_pack.rs: the rectangles of a layer; point_grid.rs: points in a rectangle
+//!                 predicted_error.rs: how; layout_pack.rs: the rectangles of a layer;
+//!                 point_grid.rs: points in a rectangle
 //! directional.rs  the complete fit of a directional light; directional_input.rs: its input
 //! reached.rs      what a local light reaches
 //! nearest.rs      how near to a local light its near planes may be
