@@ -9,7 +9,12 @@
 //! rasterizer no other time is meaningful. The run fails where the library's default, or another of
 //! the configurations it recommends, is not on the Pareto front of work per frame against rmse.
 //!
+//! In scenes of many lamps, it compares pools with lights of equal maps at equal bytes;
+//! `cargo bench --bench speed_vs_error -- --only-lamps` measures these scenes alone.
+//!
 //! `tests/support/src/measure/mod.rs` lists its parts.
+
+mod lamps;
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -62,6 +67,9 @@ struct Arguments {
     /// Sets the folder for tables and charts.
     #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/target/speed_vs_error"))]
     output: PathBuf,
+    /// Measures only the scenes of many lamps: a minute or two.
+    #[arg(long)]
+    only_lamps: bool,
     /// Is passed by `cargo bench`.
     #[arg(long, hide = true)]
     bench: bool,
@@ -95,6 +103,14 @@ fn run(arguments: &Arguments) -> Result<Result<String, String>, Box<dyn Error>> 
         );
     }
     closed_form::check_ray_caster();
+    for scene in lamps::all() {
+        if arguments.only_lamps || arguments.scenes.is_empty() {
+            lamps::measure(&gpu, &scene, effort(arguments).picture)?;
+        }
+    }
+    if arguments.only_lamps {
+        return Ok(Ok("measured the scenes of many lamps alone".to_owned()));
+    }
     let extent = if arguments.quick {
         Extent::Quick
     } else {

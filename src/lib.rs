@@ -91,7 +91,7 @@
 //! | the sun, the moon | [`DirectionalShadow`] | 1 to 8 cascades |
 //! | a spot light | [`SpotShadow`] | one |
 //! | a point light, or a spot light wider than [`SpotLight::WIDEST_SENSIBLE_OUTER_ANGLE`] | [`OmniShadow`] | six faces of a cube |
-//! | many spot or point lights, which come and go | [`pool::SpotShadowPool`], [`pool::OmniShadowPool`] | one or six for each slot, with a budget of views per frame |
+//! | many spot or point lights, which come and go | [`pool::SpotShadowPool`], [`pool::OmniShadowPool`] | one layer for all, divided by what the cameras see, with a budget of views per frame |
 //!
 //! All lights of a frame are recorded with the same [`ShadowFrame`]. A sun over a scene as deep as
 //! it is wide needs one cascade; a view to the horizon needs three or four. By default the library
@@ -301,7 +301,7 @@ pub mod caster {
     pub use crate::fit::CasterShape;
 }
 
-/// Contains pools of spot and point lights: many lights in one texture array, looked up by index.
+/// Contains pools of spot and point lights: many lights in one texture, looked up by index.
 pub mod pool {
     pub use crate::light::{OmniShadowPool, PoolDescriptor, PoolLight, ShadowSlot, SpotShadowPool};
 }

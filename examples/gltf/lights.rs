@@ -19,8 +19,8 @@ pub const MAX_LIGHTS: usize = 256;
 /// Is the largest number of directional lights with shadows, each of which needs a texture of its
 /// own.
 const MAX_SUNS: usize = 4;
-/// Is the number of local lights in one pool: 40 times six faces are 240 layers and 54 KB of
-/// uniforms, within WebGPU's defaults.
+/// Is the number of local lights in one pool: 40 times six faces have 60 KB of uniforms, within
+/// WebGPU's defaults.
 const POOL_CAPACITY: usize = 40;
 
 /// Is a set of maps, and the lights of the scene that it belongs to.
@@ -280,7 +280,7 @@ fn listed<L>(
         .collect()
 }
 
-/// Makes maps for suns one by one, and for spot and point lights in pools of one map size each.
+/// Makes maps for suns one by one, and for spot and point lights in pools.
 /// Names end in a letter, as the library requires.
 fn make_maps(
     gpu: &Gpu,
@@ -302,12 +302,8 @@ fn make_maps(
             suns.len()
         );
     }
-    // One or two point lights may be as fine as a sun; a hall full of them shares the memory.
-    let local_map_size = options.map_size.unwrap_or(match spots.len() + lamps.len() {
-        0..=2 => 2048,
-        3..=8 => 1024,
-        _ => 512,
-    });
+    // All lights of a pool share its texels. A few lamps may be as fine as a sun.
+    let local_map_size = options.map_size.unwrap_or(4096);
     let letter = |number: usize| (b'a' + number as u8) as char;
     let mut maps = Vec::new();
     for (number, &light) in suns.iter().take(MAX_SUNS).enumerate() {

@@ -39,8 +39,8 @@ impl Shadows {
             map_size,
             ..Default::default()
         };
-        let mut spots = SpotShadowPool::new(device, &pool("spots", SPOTS as u32, 512))?;
-        let mut lamps = OmniShadowPool::new(device, &pool("lamps", LAMPS as u32, 256))?;
+        let mut spots = SpotShadowPool::new(device, &pool("spots", SPOTS as u32, 1024))?;
+        let mut lamps = OmniShadowPool::new(device, &pool("lamps", LAMPS as u32, 2048))?;
         let spot_slots = (0..SPOTS)
             .map(|_| spots.insert())
             .collect::<Result<_, _>>()?;

@@ -18,11 +18,10 @@ pub fn of(shadows: &Shadows) -> String {
         for (label, wanted) in [("  still", false), ("  moving", true)] {
             let views: Vec<_> = report
                 .views
-                .iter()
-                .filter(|view| {
-                    let light = view.layer as usize / views_per_light;
-                    moves.get(light) == Some(&wanted)
-                })
+                .chunks(views_per_light)
+                .zip(moves)
+                .filter(|(_, moves)| **moves == wanted)
+                .flat_map(|(views, _)| views)
                 .copied()
                 .collect();
             if !views.is_empty() {

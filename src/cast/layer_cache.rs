@@ -7,7 +7,7 @@ use std::ops::Range;
 use crate::ShadowView;
 use crate::cast::draw_list::DrawCounter;
 use crate::cast::{FrameCasters, Revision};
-use crate::fit::ViewPlacement;
+use crate::fit::{TexelRect, ViewPlacement};
 
 /// Is one view of this frame with the casters that it needs, by their indices among the casters of
 /// the frame.
@@ -112,8 +112,8 @@ const LONGEST_COOLDOWN_DRAWS: u32 = 256;
 /// casters.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LayerCache {
-    /// Holds `None` before the first pass.
-    placement: Option<ViewPlacement>,
+    /// Is where the view is, in the world and in the layer; `None` before the first pass.
+    placement: Option<(ViewPlacement, TexelRect)>,
     /// Is the largest render coordinate, in world units, that the depths were computed from. They
     /// carry its rounding, whatever the origin is by now.
     render_reach: f64,
@@ -143,7 +143,7 @@ struct StaticCasterCache {
 impl LayerCache {
     /// Returns whether the layer holds `view`, whatever the casters.
     pub fn is_of(&self, view: &ShadowView) -> bool {
-        self.placement == Some(*view.placement())
+        self.placement == Some((*view.placement(), view.texels()))
     }
 
     /// Returns whether the layer holds the view of `draws`, and its casters are those that were
@@ -259,7 +259,7 @@ impl LayerCache {
     /// Updates the cache's state to what `draws` puts into the layer.
     pub fn replace(&mut self, draws: &ViewDraws, casters: &FrameCasters<'_>) {
         self.render_reach = self.render_reach_after(draws);
-        let placement = Some(*draws.view.placement());
+        let placement = Some((*draws.view.placement(), draws.view.texels()));
         if self.placement != placement {
             self.placement = placement;
             self.age = 0;

@@ -75,6 +75,7 @@ pub use pipeline_descriptor::{
 };
 pub(crate) use recorder::{Recorder, RecorderKind};
 pub use revision::Revision;
+pub(crate) use shared_layer::shared_layer_group;
 pub(crate) use view_uniform::VIEW_UNIFORM_BYTES;
 
 /// Clears a map to the far plane (reversed depth): nothing casts.

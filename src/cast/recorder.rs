@@ -137,6 +137,11 @@ impl Recorder {
         self.layers[view.index() as usize].cache.is_of(view)
     }
 
+    /// Resets the state of a view whose texels now belong to others.
+    pub fn forget(&mut self, view: u32) {
+        self.layers[view as usize].cache = LayerCache::default();
+    }
+
     /// Returns the device memory, in bytes, of the static-caster caches.
     pub fn bytes(&self) -> u64 {
         let own = self.layers.iter().filter_map(|l| l.static_cache.as_ref());

@@ -5,7 +5,7 @@
 use crate::ShadowError;
 use crate::error::DeviceError;
 use crate::gpu::{
-    DepthFormat, DepthMap, FullscreenTarget, capture_device_errors, fullscreen_pipeline,
+    DepthFormat, DepthMap, FullscreenTarget, Need, capture_device_errors, fullscreen_pipeline,
 };
 use crate::shader;
 
@@ -122,6 +122,28 @@ impl SharedLayer {
         pass.set_bind_group(0, &cache.bind_group, &[]);
         pass.draw(0..3, 0..1);
     }
+}
+
+/// Returns what the bind group needs that copies the static casters.
+pub(crate) fn shared_layer_group(limits: &wgpu::Limits) -> [Need; 4] {
+    [
+        Need::new("max_bind_groups", 1u32, limits.max_bind_groups),
+        Need::new(
+            "max_bindings_per_bind_group",
+            2u32,
+            limits.max_bindings_per_bind_group,
+        ),
+        Need::new(
+            "max_sampled_textures_per_shader_stage",
+            1u32,
+            limits.max_sampled_textures_per_shader_stage,
+        ),
+        Need::new(
+            "max_samplers_per_shader_stage",
+            1u32,
+            limits.max_samplers_per_shader_stage,
+        ),
+    ]
 }
 
 fn create_module(device: &wgpu::Device, label: &str) -> wgpu::ShaderModule {

@@ -9,6 +9,7 @@ use crate::error::DeviceError;
 use crate::error::{DebugViewError, DeviceRefusal};
 use crate::gpu::{FullscreenTarget, capture_device_errors, filled_buffer, fullscreen_pipeline};
 use crate::receive::{Selection, ShadowMaps, ShadowViewUniform};
+use crate::report::TexelRect;
 use crate::shader;
 
 /// Mirrors `ShadowDebugView` in `wgsl/pass/debug_view.wgsl`.
@@ -16,6 +17,7 @@ use crate::shader;
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 struct DebugUniform {
     local: [u32; 4],
+    texels: [f32; 4],
 }
 
 /// Is the largest number of views that an image shows: the faces of a cube.
@@ -25,7 +27,9 @@ const FACES: u32 = 6;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum DebugImage {
-    /// Draws the layer of this number, as it is stored in the texture.
+    /// Draws the layer of this number, as it is stored in the texture. Of a pool, whose views share
+    /// a layer, it draws the part that belongs to the view of this number: of a spot light the
+    /// index of its slot, of a point light six times that index and the number of the face.
     Layer(u32),
     /// Draws the six faces of a point light as an unfolded cross that is four cells wide and three
     /// high: -x, -z, +x and +z in the middle row, +y above -z, and -y below it. The cells outside
@@ -122,11 +126,9 @@ impl DebugView {
     ) -> Result<(), DebugViewError> {
         self.check_device(maps)?;
         let sampled = maps.sampled();
-        let layers = if sampled.shares_layer {
-            1
-        } else {
-            sampled.view_count
-        };
+        // The cascades of a light are shown together, and the views of a pool one by one.
+        let shows_shared = sampled.shares_layer && sampled.selection == Selection::Cascades;
+        let layers = if shows_shared { 1 } else { sampled.view_count };
         let (pipeline, first_layer) = match image {
             DebugImage::Layer(layer) => (&self.layer, layer),
             DebugImage::Cross => (&self.cross, 0),
@@ -147,7 +149,7 @@ impl DebugView {
         for (view, uniform) in views.iter_mut().zip(shown) {
             *view = *uniform;
         }
-        if sampled.shares_layer {
+        if shows_shared {
             // A view with casters tells that the layer they share is not empty.
             let holds = |view: &&ShadowViewUniform| view.mapping.texel_size[0] > 0.0;
             views[0] = *shown.iter().find(holds).unwrap_or(&views[0]);
@@ -160,8 +162,15 @@ impl DebugView {
             }
         }
         let local = shown.iter().any(|view| view.is_local > 0.0);
+        let side = views[0].map_size;
+        let own = maps.views().find(|view| view.index() == first_layer);
+        let own = own.filter(|_| sampled.shares_layer && !shows_shared);
         let header = DebugUniform {
             local: [u32::from(local), 0, 0, 0],
+            texels: own.map_or([0.0, 0.0, side, side], |view| {
+                let TexelRect { min, size } = view.texels();
+                [min.x, min.y, size.x, size.y].map(|texels| texels as f32)
+            }),
         };
         let bind_group = self
             .bind_group(&header, &views, sampled.map)

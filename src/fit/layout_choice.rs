@@ -9,6 +9,7 @@ use crate::fit::directional_input::{FitInput, FitLimits, Region};
 use crate::fit::layout_pack::{CascadeNeed, Layer};
 use crate::fit::layout_samples::{Sample, SampleScratch, Sampled};
 use crate::fit::map_rect::HeldDepth;
+use crate::fit::predicted_error::{LARGEST_TEXEL_PIXELS, root_mean_error};
 use crate::fit::required::{camera_slice, required_box};
 use crate::fit::spacing::Spacing;
 use crate::fit::split::{MAX_CASCADES, SplitRule};
@@ -18,15 +19,6 @@ use crate::fit::visible::SeenBounds;
 /// Is the number of equal ratios of depth, or equal depths where the camera's begin behind it, into
 /// which the covered depth is divided; cascades end at the ends of these.
 pub(crate) const ZONES: usize = 12;
-
-/// Is the factor between the error of a texel and its side in pixels times the density of edges:
-/// the mean squared error over the pixels of an image is that factor times their mean. It was
-/// measured for the default filter.
-const SQUARED_ERROR_PER_EDGE: f64 = 0.095;
-
-/// Is the number of pixels beyond which a texel makes shadows no more wrong. Shadows narrower than
-/// that are lost by then, and without a limit few points near the camera would outweigh all others.
-const LARGEST_TEXEL_PIXELS: f64 = 8.0;
 
 /// Is the least number of points on which shadows can fall for a cascade to be judged: the error of
 /// its weight is then at most about 40 percent (the root of 1/6), and so that of its share of the
@@ -319,7 +311,7 @@ impl<'a> Prediction<'a> {
             })
         };
         let sum: f64 = self.samples.iter().map(wrong).sum();
-        (SQUARED_ERROR_PER_EDGE * sum / self.sample_count as f64).sqrt()
+        root_mean_error(sum, self.sample_count)
     }
 
     /// Returns the predicted error with what the number of cascades adds to it, by which layouts

@@ -9,14 +9,11 @@ use glam::{DVec2, DVec3, UVec2};
 
 use crate::Aabb;
 use crate::fit::axes::{LightAxes, LightSpace};
-use crate::fit::local_input::LocalInput;
+use crate::fit::local_input::{LocalInput, MAX_LOCAL_VIEWS};
 use crate::fit::map_rect::{HeldRect, MapRect, MapRectRequest};
 use crate::fit::reached::{self, Reached};
 use crate::fit::region::{HalfSpace, HalfSpaces, Relation};
 use crate::fit::size_step::HeldSize;
-
-/// Is the largest number of views of one local light.
-pub(crate) const MAX_LOCAL_VIEWS: usize = 6;
 
 /// Holds the map rectangles and near planes of a local light, kept from frame to frame for their
 /// hysteresis.
@@ -88,16 +85,16 @@ impl LocalFit {
         let nearest = reached.nearest();
         for (index, axes) in input.views.iter().enumerate() {
             let view = ViewFrame { axes, light };
-            let Some((min, max)) = view.needed(input, reached, nearest) else {
+            let Some((min, max)) = view.needed(input, index, reached, nearest) else {
                 continue;
             };
             let request = MapRectRequest {
                 min,
                 max,
-                size_texels: UVec2::splat(input.map_size),
+                size_texels: UVec2::splat(input.sizes_texels[index]),
                 margin_texels: input.margin_texels,
                 texel_floor: texel_floor(light, reach),
-                full_half_side: input.caster_tangent,
+                full_half_side: input.caster_tangents[index],
             };
             let held_rect = HeldRect::fit(&request, self.held[index].as_ref());
             let rect = held_rect.rect;
@@ -121,6 +118,14 @@ impl LocalFit {
             }
         }
         next
+    }
+
+    /// Returns the size, in tangents, of what a view has to cover; `None` for a view in which
+    /// nothing can cast a shadow.
+    pub fn needed_size(&self, view: usize) -> Option<DVec2> {
+        self.rects[view]?;
+        let (request, _) = self.requests.views[view].as_ref()?;
+        Some(request.max - request.min)
     }
 
     /// Returns the fit for a frame in which nothing differs from the last. Only the time counts for
@@ -200,13 +205,14 @@ impl ViewFrame<'_> {
     fn needed(
         &self,
         input: &LocalInput<'_>,
+        index: usize,
         reached: &Reached,
         nearest: f64,
     ) -> Option<(DVec2, DVec2)> {
         let square =
             |tangent: f64| self.region(DVec2::splat(-tangent), DVec2::splat(tangent), nearest);
         let casters = reached.casters.iter().map(|caster| &caster.bounds);
-        let cast = self.extent(&square(input.caster_tangent), casters)?;
+        let cast = self.extent(&square(input.caster_tangents[index]), casters)?;
         if input.looks_around {
             return Some((cast.min, cast.max));
         }

@@ -7,6 +7,9 @@ use crate::fit::boxes::Boxes;
 use crate::fit::region::HalfSpaces;
 use crate::fit::visible::Receivers;
 
+/// Is the largest number of views of one local light.
+pub(crate) const MAX_LOCAL_VIEWS: usize = 6;
+
 /// Holds the input of a frame.
 pub(crate) struct LocalInput<'a> {
     pub origin: DVec3,
@@ -17,8 +20,8 @@ pub(crate) struct LocalInput<'a> {
     pub views: &'a [LightAxes],
     /// Is the tangent of half the angle over which a view has receivers.
     pub receiver_tangent: f64,
-    /// Is the same for casters: wider by the reach of a kernel at the border.
-    pub caster_tangent: f64,
+    /// Holds the same for the casters of each view: wider by the reach of a kernel at the border.
+    pub caster_tangents: [f64; MAX_LOCAL_VIEWS],
     /// States that lookups reach beyond the position of their receiver: views are then not limited
     /// to where receivers are seen.
     pub looks_around: bool,
@@ -27,6 +30,9 @@ pub(crate) struct LocalInput<'a> {
     /// Holds the bounds of what casts; empty ones cast nothing.
     pub casters: Boxes<'a>,
     pub receivers: Receivers<'a>,
-    pub map_size: u32,
+    /// Counts the texels per side of each view.
+    pub sizes_texels: [u32; MAX_LOCAL_VIEWS],
+    /// Is the number of texels per side of a view for which near planes are chosen.
+    pub near_plane_texels: u32,
     pub margin_texels: u32,
 }

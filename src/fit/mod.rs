@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! camera.rs       the engine's camera as half-spaces and depth along the view
+//! camera_rays.rs  where rays through its image meet receivers
 //! region.rs       exact vertices of (convex region ∩ box)
 //! axes.rs         world-fixed light axes, light space and boxes in it
 //! footprint.rs    which part of a slice of the view a map rectangle covers
@@ -24,11 +25,15 @@
 //! cascade_layout.rs  how texels may be divided among cascades
 //! layout.rs       the layout of a light, from frame to frame
 //! layout_choice.rs  the layout with the least predicted error; layout_samples.rs: what predicts it;
-//!                 layout_pack.rs: the rectangles of a layer; point_grid.rs: points in a rectangle
+//!                 predicted_error.rs: how; layout_pack.rs: the rectangles of a layer;
+//!                 point_grid.rs: points in a rectangle
 //! directional.rs  the complete fit of a directional light; directional_input.rs: its input
 //! reached.rs      what a local light reaches
 //! nearest.rs      how near to a local light its near planes may be
 //! local.rs        the complete fit of a spot or point light's views; local_input.rs: its input
+//! local_need.rs   how many texels the views of local lights need
+//! square_sizes.rs  the sizes of the squares of a layer that views share; square_packing.rs: where
+//!                 they lie
 //! texel_rect.rs   the rectangle of a layer that a view is rendered into
 //! view.rs         ShadowView: the value that maps are rendered and sampled with
 //! view_rounding.rs  the rounding errors of a view
@@ -38,6 +43,7 @@ mod axes;
 mod bounds_tree;
 mod boxes;
 mod camera;
+mod camera_rays;
 mod cascade_bounds;
 mod cascade_layout;
 mod caster_parts;
@@ -55,15 +61,19 @@ mod layout_pack;
 mod layout_samples;
 mod local;
 mod local_input;
+mod local_need;
 mod map_rect;
 mod nearest;
 mod point_grid;
+mod predicted_error;
 mod reached;
 mod region;
 mod required;
 mod size_step;
 mod spacing;
 mod split;
+mod square_packing;
+mod square_sizes;
 mod stability;
 mod texel_rect;
 mod view;
@@ -81,13 +91,17 @@ pub use caster_shape::CasterShape;
 pub(crate) use directional::{DirectionalFit, FitScratch};
 pub(crate) use directional_input::{FitInput, FitLimits, Region};
 pub use footprint::SliceReport;
-pub(crate) use local::{LocalFit, MAX_LOCAL_VIEWS};
-pub(crate) use local_input::LocalInput;
+pub(crate) use local::LocalFit;
+pub(crate) use local_input::{LocalInput, MAX_LOCAL_VIEWS};
+pub(crate) use local_need::{LightShape, LocalNeeds, ViewNeed};
 pub(crate) use map_rect::{LightSpaceBounds, MapRect};
+pub(crate) use predicted_error::{LARGEST_TEXEL_PIXELS, root_mean_error};
 pub(crate) use reached::Reached;
 pub(crate) use region::HalfSpaces;
 pub use split::CascadeSplit;
 pub(crate) use split::MAX_CASCADES;
+pub(crate) use square_packing::{Hold, Packing, side_texels};
+pub(crate) use square_sizes::{SquareSizes, Wanted};
 pub use stability::Stability;
 pub use texel_rect::TexelRect;
 pub use view::ShadowView;

@@ -56,7 +56,7 @@ impl Reached {
             Some(ReachedCaster {
                 index,
                 bounds: part,
-                nearest: nearest_for(bounds, light, reach, input.map_size),
+                nearest: nearest_for(bounds, light, reach, input.near_plane_texels),
                 farthest_corner: farthest_corner(bounds, light).max_element(),
             })
         };

@@ -273,7 +273,7 @@ impl ShadowView {
     }
 
     /// Returns the rectangle of the layer that this view is rendered into: all of it, but where the
-    /// cascades of a light share a layer.
+    /// cascades of a light or the views of a pool share a layer.
     pub const fn texels(&self) -> TexelRect {
         self.texels
     }

@@ -1,11 +1,15 @@
 //! Records spot and point lights, alone or in a pool: fits their perspective views, selects those
 //! that are drawn in a frame, and passes them to the maps.
 
-use glam::DVec3;
+use glam::{DVec3, UVec2};
 
 use crate::cast::ViewDraws;
-use crate::fit::{LightAxes, LocalFit, LocalInput, MAX_LOCAL_VIEWS, PerspectiveView, Reached};
+use crate::fit::{
+    LightAxes, LocalFit, LocalInput, LocalNeeds, MAX_LOCAL_VIEWS, PerspectiveView, Reached,
+    TexelRect,
+};
 use crate::light::distance_limit::range_limit;
+use crate::light::pool_layer::PoolLayer;
 use crate::light::scene::FrameVersion;
 use crate::receive::{ALL_TEXELS, LayerState, MapsFrame, ShadowMaps, ShadowMapsDescriptor};
 use crate::{ShadowError, ShadowFrame, ShadowView, report::ShadowReport};
@@ -14,14 +18,18 @@ use crate::{ShadowError, ShadowFrame, ShadowView, report::ShadowReport};
 /// has as many as its capacity.
 #[derive(Debug)]
 pub(crate) struct LocalLights {
-    maps: ShadowMaps,
-    slots: Vec<SlotState>,
+    pub(super) maps: ShadowMaps,
+    /// Divides the layer of a pool; `None` for a single light, whose views have layers of their
+    /// own.
+    pool_layer: Option<PoolLayer>,
+    pub(super) slots: Vec<SlotState>,
     /// States that the device clips depth to -1..1.
     has_symmetric_clip_depth: bool,
     /// Is empty between frames; this list and the next are reused for their memory.
     candidates: Vec<Candidate>,
     layers: Vec<LayerState>,
-    reached: Reached,
+    pub(super) reached: Reached,
+    pub(super) needs: LocalNeeds,
     /// Is what the maps were last recorded for, with the list after this.
     last_frame: Option<FrameVersion>,
     last_lights: Vec<LocalPlacement>,
@@ -30,10 +38,10 @@ pub(crate) struct LocalLights {
 }
 
 #[derive(Clone, Debug, Default)]
-struct SlotState {
+pub(super) struct SlotState {
     fit: LocalFit,
     /// Counts the frames for which a needed refresh has been deferred.
-    waited: u32,
+    pub waited: u32,
     /// States that the slot's layers have been drawn, or were found to need no drawing, since the
     /// light was inserted.
     has_map: bool,
@@ -62,21 +70,30 @@ pub(crate) struct LocalPlacement {
     pub importance: f32,
 }
 
-/// Holds the new fit of a light and the draws that would refresh it.
-#[derive(Debug)]
-struct Candidate {
-    fit: LocalFit,
-    draws: [Option<ViewDraws>; MAX_LOCAL_VIEWS],
-    /// Holds the views of `draws`.
-    views: [Option<ShadowView>; MAX_LOCAL_VIEWS],
-    /// Counts the depth passes that its views need.
-    needed: u32,
-    refreshed: bool,
+impl LocalPlacement {
+    /// Returns the number of one of its views among those of all lights.
+    pub fn view(&self, view: usize) -> usize {
+        (self.slot * self.view_count) as usize + view
+    }
 }
 
-/// Is the least importance that a light with an importance above 0 counts for, as a fraction of the
-/// greatest in the frame.
-const LEAST_SHARE_OF_IMPORTANCE: f64 = 1.0 / 4096.0;
+/// Holds the new fit of a light and the draws that would refresh it.
+#[derive(Debug)]
+pub(super) struct Candidate {
+    pub fit: LocalFit,
+    pub draws: [Option<ViewDraws>; MAX_LOCAL_VIEWS],
+    /// Holds the views of `draws`.
+    pub views: [Option<ShadowView>; MAX_LOCAL_VIEWS],
+    /// Counts the depth passes that its views need.
+    pub needed: u32,
+    pub refreshed: bool,
+    /// Has a bit for each view for which there is no room in the layer.
+    pub without_room: u32,
+}
+
+/// Is the number of texels per side of a view for which the near planes of a pool are chosen, so that
+/// they do not move when sizes change: that of a single light by default.
+const POOL_NEAR_PLANE_TEXELS: u32 = 1024;
 
 impl LocalLights {
     /// Makes the maps, and a slot for each of their lights.
@@ -84,13 +101,27 @@ impl LocalLights {
         device: &wgpu::Device,
         descriptor: &ShadowMapsDescriptor<'_>,
     ) -> Result<Self, ShadowError> {
+        let maps = ShadowMaps::new(device, descriptor)?;
+        let views = descriptor.lights * descriptor.views_per_light;
+        let pool_layer = if descriptor.shares_layer {
+            let layer = PoolLayer::new(descriptor.map_size, views as usize);
+            Some(layer.ok_or_else(|| ShadowError::OutOfRange {
+                field: descriptor.size_field,
+                rule: "large enough for one texel per view in a square of 2^n times 2^n views",
+                value: descriptor.map_size.to_string(),
+            })?)
+        } else {
+            None
+        };
         Ok(Self {
-            maps: ShadowMaps::new(device, descriptor)?,
+            maps,
+            pool_layer,
             has_symmetric_clip_depth: device.adapter_info().backend == wgpu::Backend::Gl,
             slots: vec![SlotState::default(); descriptor.lights as usize],
             candidates: Vec::new(),
             layers: Vec::new(),
             reached: Reached::default(),
+            needs: LocalNeeds::default(),
             last_frame: None,
             last_lights: Vec::new(),
             fits: Vec::new(),
@@ -113,12 +144,22 @@ impl LocalLights {
         for slot in &mut self.slots {
             slot.fit = LocalFit::default();
         }
+        if let Some(layer) = &mut self.pool_layer {
+            layer.reset_history();
+        }
     }
 
     /// Resets the state of a slot, whose next light then has no map until it is drawn.
     pub fn reset(&mut self, slot: u32) {
         self.last_frame = None;
         self.slots[slot as usize] = SlotState::default();
+        if let Some(layer) = &mut self.pool_layer {
+            let count = self.maps.views_per_light();
+            for view in slot * count..(slot + 1) * count {
+                layer.release(view as usize);
+                self.maps.forget(view);
+            }
+        }
     }
 
     /// Fits and culls `lights`, uploads their uniforms and records their depth passes. `max_views`
@@ -136,11 +177,21 @@ impl LocalLights {
         self.last_frame = None;
         let mut candidates = std::mem::take(&mut self.candidates);
         candidates.clear();
+        // Until nothing can fail any longer, the changes are those of a copy.
+        let mut pool_layer = self.pool_layer.clone();
         for light in lights {
-            candidates.push(self.candidate(frame, light)?);
+            candidates.push(self.candidate(frame, light, pool_layer.as_ref())?);
         }
-        if let Some(max_views) = max_views {
-            self.choose(lights, max_views, &mut candidates);
+        let mut given_up = Vec::new();
+        if let Some(layer) = &mut pool_layer {
+            self.find_sizes(frame, lights, layer, &mut candidates)?;
+        }
+        let spent = max_views.map(|max_views| {
+            let spent = self.choose(lights, max_views, &mut candidates);
+            max_views.saturating_sub(spent)
+        });
+        if let Some(layer) = &mut pool_layer {
+            given_up = self.place(frame, lights, layer, spent, &mut candidates)?;
         }
 
         let maps = &mut self.maps;
@@ -163,7 +214,7 @@ impl LocalLights {
                 range_world: f64::from(range),
                 limit: range_limit(range, maps.sampling().fade),
                 shadowed_texels: ALL_TEXELS,
-                deferred: !candidate.refreshed,
+                deferred: !candidate.refreshed || candidate.without_room >> view & 1 == 1,
                 slice: None,
             }));
             let draws = candidate.draws.iter_mut().filter_map(Option::take);
@@ -186,10 +237,20 @@ impl LocalLights {
             views,
             camera_render: frame.camera_render(),
             casters: frame.casters,
-            predicted_error: None,
+            predicted_error: pool_layer
+                .as_ref()
+                .and_then(|layer| layer.predicted_error)
+                .map(|error| error as f32),
         };
-        let report = maps.record(encoder, maps_frame)?;
+        maps.record(encoder, maps_frame)?;
+        given_up
+            .into_iter()
+            .for_each(|view| maps.forget(view as u32));
+        self.pool_layer = pool_layer;
         self.layers = layers;
+        let lacks_room = candidates
+            .iter()
+            .any(|candidate| candidate.without_room > 0);
         for (light, candidate) in lights.iter().zip(candidates.drain(..)) {
             let state = &mut self.slots[light.slot as usize];
             if candidate.refreshed {
@@ -206,10 +267,11 @@ impl LocalLights {
             }
         }
         self.candidates = candidates;
-        self.last_frame = Some(frame.version);
+        // A view without room finds some as soon as others have moved.
+        self.last_frame = (!lacks_room).then_some(frame.version);
         self.last_lights.clear();
         self.last_lights.extend_from_slice(lights);
-        Ok(report)
+        Ok(self.maps.report())
     }
 
     /// Returns whether a frame is the last one again and leaves all views as they are. The time
@@ -219,6 +281,10 @@ impl LocalLights {
             || self.maps.unchanged_report().is_none()
             || self.last_lights != lights
         {
+            return false;
+        }
+        let due = |layer: &mut PoolLayer| layer.count_frame() && !layer.is_settled();
+        if self.pool_layer.as_mut().is_some_and(due) {
             return false;
         }
         self.fits.clear();
@@ -234,29 +300,52 @@ impl LocalLights {
         true
     }
 
-    /// Fits and culls one light, and returns what would refresh it.
-    fn candidate(
-        &mut self,
-        frame: &ShadowFrame<'_>,
-        light: &LocalPlacement,
-    ) -> Result<Candidate, ShadowError> {
-        let maps = &mut self.maps;
-        let axes = &light.axes[..light.view_count as usize];
-        let input = LocalInput {
+    /// Returns what a light is fitted to.
+    pub(super) fn input<'a>(
+        &self,
+        frame: &ShadowFrame<'a>,
+        light: &'a LocalPlacement,
+        layer: Option<&PoolLayer>,
+    ) -> LocalInput<'a> {
+        let maps = &self.maps;
+        let first = (light.slot * light.view_count) as usize;
+        let size = |view: usize| match layer {
+            Some(layer) if view < light.view_count as usize => layer.side(first + view),
+            _ => maps.map_size(),
+        };
+        let sizes_texels = std::array::from_fn(size);
+        LocalInput {
             origin: frame.origin,
             position_world: light.position_world,
             range: f64::from(light.range),
-            views: axes,
+            views: &light.axes[..light.view_count as usize],
             receiver_tangent: light.tangent,
-            caster_tangent: light.tangent
-                * border(maps.map_size(), maps.sampling().border_texels()),
+            caster_tangents: sizes_texels
+                .map(|size| light.tangent * border(size, maps.sampling().border_texels())),
             looks_around: maps.sampling().filter.directions().is_some(),
             seen: frame.seen,
             casters: frame.casters.casting(),
             receivers: frame.receivers,
-            map_size: maps.map_size(),
+            sizes_texels,
+            near_plane_texels: match layer {
+                Some(_) => POOL_NEAR_PLANE_TEXELS,
+                None => maps.map_size(),
+            },
             margin_texels: maps.sampling().margin_texels(),
-        };
+        }
+    }
+
+    /// Fits and culls one light, and returns what would refresh it.
+    pub(super) fn candidate(
+        &mut self,
+        frame: &ShadowFrame<'_>,
+        light: &LocalPlacement,
+        layer: Option<&PoolLayer>,
+    ) -> Result<Candidate, ShadowError> {
+        let input = self.input(frame, light, layer);
+        let sizes_texels = input.sizes_texels;
+        let maps = &mut self.maps;
+        let axes = &light.axes[..light.view_count as usize];
         let mut drawn: [Vec<u32>; MAX_LOCAL_VIEWS] = std::array::from_fn(|_| maps.spare_list());
         let held = &self.slots[light.slot as usize].fit;
         let fit = held.fit(&input, &mut self.reached, &mut drawn);
@@ -268,7 +357,7 @@ impl LocalLights {
                 maps.return_list(drawn);
                 continue;
             };
-            let layer = light.slot * light.view_count + index as u32;
+            let number = light.slot * light.view_count + index as u32;
             let view = PerspectiveView {
                 axes,
                 position_world: light.position_world,
@@ -280,8 +369,18 @@ impl LocalLights {
                 range: f64::from(light.range),
                 cone_cosine: light.cone_cosine,
             };
-            let view = ShadowView::perspective(&view, frame.origin, layer);
-            let view = view.checked()?;
+            let view = ShadowView::perspective(&view, frame.origin, number);
+            let mut view = view.checked()?;
+            if let Some(layer) = layer {
+                // A view that has no texels of this size yet is drawn wherever it comes to be.
+                let size = UVec2::splat(sizes_texels[index]);
+                let nowhere = TexelRect {
+                    min: UVec2::splat(u32::MAX),
+                    size,
+                };
+                let texels = layer.texels(number as usize).unwrap_or(nowhere);
+                view = view.in_shared_layer(texels, layer.map_size());
+            }
             let view_draws = ViewDraws::new(view, drawn);
             needed += maps.passes(&view_draws, &frame.casters);
             draws[index] = Some(view_draws);
@@ -293,45 +392,8 @@ impl LocalLights {
             draws,
             views,
             refreshed: true,
+            without_room: 0,
         })
-    }
-
-    /// Selects the lights to refresh within a budget of `max_views` depth passes. Lights that need
-    /// a refresh are taken in descending order of urgency, which is the importance times (1 + the
-    /// number of frames waited), so that no light of importance above 0 waits for ever. The first
-    /// is always refreshed, however small the budget; each further one is refreshed if its passes
-    /// fit into the rest.
-    ///
-    /// The products neither overflow nor underflow in f64: a finite f32 times 2³² is far below the
-    /// largest f64. An importance above 0 counts for no less than [`LEAST_SHARE_OF_IMPORTANCE`] of
-    /// the frame's greatest. Among `n` lights, one of weight `w` beside a greatest weight of `W`
-    /// then waits at most `(n - 1) W / w + n` frames: once its product exceeds `(n - 1) W`, only
-    /// lights that have waited for at least `n - 1` frames precede it, and each of the others can
-    /// do so only once.
-    fn choose(&self, lights: &[LocalPlacement], max_views: u32, candidates: &mut [Candidate]) {
-        let importances = lights.iter().map(|light| f64::from(light.importance));
-        let least = importances.fold(0.0, f64::max) * LEAST_SHARE_OF_IMPORTANCE;
-        let urgency = |index: usize| {
-            let light = &lights[index];
-            let weight = match f64::from(light.importance) {
-                importance if importance > 0.0 => importance.max(least),
-                _ => 0.0,
-            };
-            let waited = self.slots[light.slot as usize].waited;
-            weight * (1.0 + f64::from(waited))
-        };
-        let mut order: Vec<usize> = (0..candidates.len())
-            .filter(|&index| candidates[index].needed > 0)
-            .collect();
-        order.sort_by(|&a, &b| urgency(b).total_cmp(&urgency(a)));
-        let mut spent = 0;
-        for (rank, index) in order.into_iter().enumerate() {
-            let candidate = &mut candidates[index];
-            candidate.refreshed = rank == 0 || spent + candidate.needed <= max_views;
-            if candidate.refreshed {
-                spent += candidate.needed;
-            }
-        }
     }
 }
 

@@ -8,6 +8,8 @@
 //! omni.rs         OmniShadow: a light that shines in every direction
 //! pool.rs         pools of spot and point lights
 //! local.rs        what spot and point lights have in common
+//! local_budget.rs  which lights are refreshed under a budget
+//! local_sizes.rs  how large the views of a pool's lights are; pool_layer.rs: which texels they have
 //! distance_limit.rs   where shadows end
 //! large_triangles.rs  the rounding that large triangles bring
 //! ```
@@ -16,8 +18,11 @@ mod directional;
 mod distance_limit;
 mod large_triangles;
 mod local;
+mod local_budget;
+mod local_sizes;
 mod omni;
 mod pool;
+mod pool_layer;
 mod scene;
 mod spot;
 

@@ -1,5 +1,5 @@
-//! Defines pools of local lights: many lights share one texture array, one bind group entry and one
-//! WGSL function, which takes an index.
+//! Defines pools of local lights: many lights share one texture, one bind group entry and one WGSL
+//! function, which takes an index.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -20,14 +20,18 @@ pub struct PoolDescriptor<'a> {
     /// the default.
     pub label: wgpu::Label<'a>,
     /// Is the number of lights that the pool can contain at once, fixed for its lifetime: at least
-    /// 1, and no more than the device's limits on texture layers and uniform bytes allow (42 point
-    /// lights or 256 spot lights with WebGPU's default limits). The default is 16. The memory for
-    /// all of them is allocated at once.
+    /// 1, and no more than the device's limit on uniform bytes allows (42 point lights or 256 spot
+    /// lights with WebGPU's default limits). The default is 16. It costs uniforms, and no texels.
     pub capacity: u32,
-    /// Is the number of texels per side of each map: from 1 to the device's
-    /// `max_texture_dimension_2d`. The default is
-    /// 512. Cost and memory grow with its square; the blur and the displacement of an edge shrink
-    ///      in proportion to it.
+    /// Is the number of texels per side of the one layer that all views of the pool share, so that
+    /// its square is their budget: at least one for each view in a square of 2ⁿ times 2ⁿ views, and
+    /// at most the device's `max_texture_dimension_2d`. The default is 2048, the texels of one
+    /// directional light by default (16 MiB), or of 16 maps of 512².
+    ///
+    /// The pool divides them by what the cameras of the frame see: see [`OmniShadowPool`]. If too
+    /// few, shadows near the camera are blurred by coarse texels; if too many, memory is wasted,
+    /// and each view takes longer to draw. The blur and the displacement of an edge shrink in
+    /// proportion to it.
     pub map_size: u32,
     /// Selects how a map is sampled. The default is that of [`Filter`]. A [`SpotShadowPool`]
     /// refuses filters for point lights only.
@@ -44,7 +48,7 @@ impl Default for PoolDescriptor<'_> {
         Self {
             label: None,
             capacity: 16,
-            map_size: 512,
+            map_size: 2048,
             filter: Filter::default(),
             bias: Bias::Auto,
             fade: 0.0,
@@ -196,7 +200,7 @@ macro_rules! pool {
                         },
                         views_per_light: $views,
                         selection: $selection,
-                        shares_layer: false,
+                        shares_layer: true,
                         indexed: true,
                     },
                 )?;
@@ -237,9 +241,10 @@ macro_rules! pool {
             /// nothing changed takes no pass. Lights of the pool that are not listed cast no shadow
             /// in this frame: every surface is lit.
             ///
-            /// `max_views` is the budget: the largest number of depth passes (over `map_size`²
-            /// texels each) to record in this frame, or `None` for no limit. A view takes one pass,
-            /// or two where its static-caster cache is drawn as well. The most important lights are
+            /// `max_views` is the budget: the largest number of depth passes to record in this
+            /// frame, or `None` for no limit. A view takes one pass, or two where its static-caster
+            /// cache is drawn as well. A view whose size changes takes one, and a view that has to
+            /// make room for another takes one. The most important lights are
             /// refreshed first, and at least one is, whatever it costs. The others keep their last
             /// map and are reported as [`Deferred`](crate::report::ViewStatus::Deferred). A light
             /// that has never been drawn, or not since `invalidate`, is lit everywhere until it is
@@ -297,8 +302,26 @@ macro_rules! pool {
 }
 
 pool!(
-    /// Renders the shadows of point lights that are inserted and removed at run time. Each slot has
-    /// six layers of one texture array.
+    /// Renders the shadows of point lights that are inserted and removed at run time. The faces of
+    /// all of them share one layer of texels.
+    ///
+    /// # How the texels are divided
+    /// Every face gets a square by what the cameras see of the receivers on which its shadows can
+    /// fall: a face in which nothing casts onto a visible receiver has none, and one close to a
+    /// camera has many. If there are more lights than fit, all get fewer; as many as the capacity
+    /// always have a place. Without a camera in the frame, all have the same.
+    ///
+    /// Every 16 frames, and when a face is needed that was not, what the cameras see is sampled by
+    /// some rays through the images. As under
+    /// [`CascadeLayout::Automatic`](crate::CascadeLayout::Automatic), the squared error is taken to
+    /// be in proportion to the density of shadow edges and the size of a texel, both in pixels, and
+    /// [`predicted_error`](crate::report::ShadowReport::predicted_error) tells what comes of it,
+    /// over all pairs of a visible point and a light. Sides are the layer's over a power of two.
+    /// They change when the error would be lower by 8 percent for three predictions, or by 20
+    /// percent at once, and a face keeps its size as long as it is within 3/4 of a power of two of
+    /// the ideal. A face that changes is drawn once more; all others keep what they have, but for
+    /// those that are moved because the gaps left are too small.
+    /// [`ViewReport::texels`](crate::report::ViewReport::texels) tells where each face is.
     ///
     /// The WGSL function is `shadow_NAME(slot.index(), position, normal)`.
     OmniShadowPool,
@@ -309,8 +332,8 @@ pool!(
 );
 
 pool!(
-    /// Renders the shadows of spot lights that are inserted and removed at run time. Each slot has
-    /// one layer of one texture array.
+    /// Renders the shadows of spot lights that are inserted and removed at run time. All of them
+    /// share one layer of texels, which is divided as that of an [`OmniShadowPool`].
     ///
     /// The WGSL function is `shadow_NAME(slot.index(), position, normal)`.
     SpotShadowPool,

@@ -92,6 +92,7 @@ fn place_functions(name: &str, maps: &SampledMaps<'_>) -> String {
             index,
             first_view,
             any_view,
+            inner_view: if maps.shares_layer { "view" } else { any_view },
             view_count,
         }
         .fill(),
@@ -148,6 +149,11 @@ fn visibility_function(name: &str, maps: &SampledMaps<'_>) -> String {
         }
         Selection::OneView | Selection::CubeFace => ("not_weighted", "not_faded"),
     };
+    let layer = if maps.shares_layer {
+        "0u"
+    } else {
+        "place.layer"
+    };
     if let Some((pattern, sample_count)) = sampling.filter.directions() {
         let (surface, normal) = match sampling.bias {
             Bias::Manual { .. } => ("sphere", ""),
@@ -167,14 +173,10 @@ fn visibility_function(name: &str, maps: &SampledMaps<'_>) -> String {
             sampler,
             weight,
             faded,
+            layer,
         }
         .fill();
     }
-    let layer = if maps.shares_layer {
-        "0u"
-    } else {
-        "place.layer"
-    };
     if sampling.blend > 0.0 && maps.view_count > 1 {
         return template::BlendedLookup {
             name,

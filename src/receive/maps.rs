@@ -66,8 +66,7 @@ pub(crate) struct ShadowMapsDescriptor<'a> {
     pub layers_field: &'static str,
     pub sampling: Sampling,
     pub selection: Selection,
-    /// States that all views are rectangles of one layer, which must be those of a directional
-    /// light.
+    /// States that all views are rectangles of one layer.
     pub shares_layer: bool,
     /// States that the maps are those of a pool, whose WGSL function takes the index of a light.
     pub indexed: bool,
@@ -97,7 +96,8 @@ impl ShadowMaps {
         // bits.
         let views = u64::from(descriptor.lights) * u64::from(descriptor.views_per_light);
         let layers = if descriptor.shares_layer { 1 } else { views };
-        check_layers(device, descriptor.layers_field, layers, views)?;
+        let shares_layer = descriptor.shares_layer;
+        check_layers(device, descriptor.layers_field, shares_layer, views)?;
         let (label, views, layers) = (descriptor.label, views as u32, layers as u32);
         let map = DepthMap::new(
             device,
@@ -152,8 +152,8 @@ impl ShadowMaps {
     /// Returns the depth texture. Its depths are reversed: near 1, far 0. Its format is
     /// `Depth32Float`, or that of a directional light's [`DepthFormat`](crate::DepthFormat). It has
     /// one layer per cascade, spot light or cube face (+x, -x, +y, -y, +z, -z), and a single layer
-    /// under [`CascadeLayout::Automatic`](crate::CascadeLayout::Automatic); a pool has the layers
-    /// of its slots in order. It can be copied from on all backends but OpenGL.
+    /// under [`CascadeLayout::Automatic`](crate::CascadeLayout::Automatic) and for a pool. It can be
+    /// copied from on all backends but OpenGL.
     pub fn texture(&self) -> &wgpu::Texture {
         self.map.texture()
     }
@@ -165,12 +165,16 @@ impl ShadowMaps {
         self.map.array_view()
     }
 
+    pub(crate) fn views_per_light(&self) -> u32 {
+        self.views_per_light
+    }
+
     pub(crate) fn map_size(&self) -> u32 {
         self.map.size()
     }
 
     /// Returns the uniform buffer, which holds one [`ShadowViewUniform`] per view, that is per
-    /// layer unless cascades share one.
+    /// layer unless views share one.
     pub fn uniform_buffer(&self) -> &wgpu::Buffer {
         self.uniforms.buffer()
     }
@@ -218,6 +222,11 @@ impl ShadowMaps {
         self.is_unchanged = false;
         self.recorder.invalidate();
         self.uniforms.invalidate();
+    }
+
+    /// Resets the state of a view whose texels now belong to others.
+    pub(crate) fn forget(&mut self, view: u32) {
+        self.recorder.forget(view);
     }
 
     /// Returns an empty list of caster indices, which reuses the memory of an earlier frame.

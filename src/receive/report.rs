@@ -131,10 +131,12 @@ pub struct ShadowReport {
     /// ([`OmniShadow`](crate::OmniShadow) states when).
     pub passes: u32,
     /// Is the error that is predicted for the layout of a directional light under
-    /// [`CascadeLayout::Automatic`](crate::CascadeLayout::Automatic): the root of the mean squared
-    /// error of visibility over the pixels of the images, for images of 720 rows and the default
-    /// filter. It is estimated from bounds, so that it serves to compare layouts and scenes rather
-    /// than as a promise. It is `None` for all other lights.
+    /// [`CascadeLayout::Automatic`](crate::CascadeLayout::Automatic), or for that of a pool: the
+    /// root of the mean squared error of visibility over the pixels of the images, for images of
+    /// 720 rows and the default filter; for a pool over all pairs of a pixel and a light that
+    /// shines on it. It is estimated from bounds, so that it serves to compare layouts and scenes
+    /// rather than as a promise. It is `None` for all other lights, and for a pool without a camera
+    /// in the frame.
     pub predicted_error: Option<f32>,
     /// Is the device memory, in bytes, of the depth texture and of the static-caster caches.
     pub bytes_held: u64,

@@ -52,7 +52,7 @@ templates! {
     /// Defines where a position falls in the map of a spot light.
     OneView("one_view.wgsl") { name, index, first_view, any_view, view_count }
     /// Defines where a position falls in the map of a point light.
-    CubeFace("cube_face.wgsl") { name, index, first_view, any_view, view_count }
+    CubeFace("cube_face.wgsl") { name, index, first_view, any_view, inner_view, view_count }
     /// Defines `shadow_view_NAME`.
     View("view.wgsl") { name, index, view_count }
     /// Defines `shadow_NAME` as one lookup in one view.
@@ -67,7 +67,7 @@ templates! {
     /// Defines `shadow_NAME` as the mean of lookups in many directions from a point light.
     MeanLookup("mean_lookup.wgsl") {
         name, index, any_view, pattern, sample_count, sample_count_f32, surface, normal, bias, filter, sampler,
-        weight, faded
+        weight, faded, layer
     }
 }
 

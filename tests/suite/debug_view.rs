@@ -288,7 +288,7 @@ fn a_pool_shows_one_of_its_lights() {
     let wanted = picture(gpu, alone.maps(), DebugImage::Cross, CROSS).expect("a cube");
     let descriptor = PoolDescriptor {
         capacity: 3,
-        map_size: 256,
+        map_size: 1024,
         ..Default::default()
     };
     let mut pool = OmniShadowPool::new(&gpu.device, &descriptor).expect("a valid pool");

@@ -239,7 +239,7 @@ fn a_spot_put_off_while_the_origin_moves() {
             &gpu.device,
             &PoolDescriptor {
                 capacity: 2,
-                map_size: 1024,
+                map_size: 2048,
                 ..Default::default()
             },
         )

@@ -65,6 +65,7 @@ mod pool;
 mod pool_budget;
 mod pool_importance;
 mod pool_index;
+mod pool_layer;
 mod promised_wgsl;
 mod receiver_parity;
 mod reference_limits;

@@ -25,7 +25,7 @@ struct Row {
 
 impl Row {
     fn new(gpu: &Gpu, importances: &[f32]) -> Self {
-        let mut pool = pool(importances.len() as u32, 64).expect("a valid pool");
+        let mut pool = pool(importances.len() as u32, 128).expect("a valid pool");
         let pipeline = default_pipeline(gpu);
         let (mut lights, mut slabs) = (Vec::new(), Vec::new());
         for (index, importance) in importances.iter().enumerate() {
@@ -78,8 +78,8 @@ impl Row {
         };
         let report = record(gpu, &mut self.pool, &frame).expect("a valid frame");
         let mut drawn = Vec::new();
-        for view in &report.views {
-            let light = (view.layer / 6) as usize;
+        for (index, view) in report.views.iter().enumerate() {
+            let light = index / 6;
             match view.status {
                 ViewStatus::Drawn => drawn.push(light),
                 ViewStatus::Empty | ViewStatus::Kept | ViewStatus::Deferred => {}
@@ -277,13 +277,12 @@ fn waiting_costs_no_memory() {
     assert!(lengths[2] < lengths[0] + 400, "{lengths:?}");
 }
 
-/// Drawing the static-caster cache of a layer takes a pass of its own, which counts like any other.
-/// (wgpu's OpenGL backend copies no depth textures, so there is none.)
+/// Drawing the static-caster cache of a view takes a pass of its own, which counts like any other.
 #[test]
 fn no_frame_draws_more_passes_than_the_budget() {
     let gpu = gpu();
     let pipeline = default_pipeline(gpu);
-    let mut pool = pool(4, 64).expect("a valid pool");
+    let mut pool = pool(4, 512).expect("a valid pool");
     let lights: Vec<_> = (0..4)
         .map(|index| {
             let slot = pool.insert().expect("a free slot");
@@ -321,6 +320,5 @@ fn no_frame_draws_more_passes_than_the_budget() {
         assert!(report.passes <= 2, "{} passes in {step}", report.passes);
         copied += report.views.iter().map(|view| view.copied).sum::<u32>();
     }
-    let can_copy = gpu.adapter.backend != wgpu::Backend::Gl;
-    assert_eq!(copied > 0, can_copy, "static casters are copied");
+    assert!(copied > 0, "static casters are copied");
 }

@@ -35,7 +35,7 @@ fn drawn(importances: &[f32], max_views: u32, frames: usize) -> Vec<Vec<usize>> 
     let gpu = gpu();
     let descriptor = PoolDescriptor {
         capacity: importances.len() as u32,
-        map_size: 4,
+        map_size: 64,
         ..Default::default()
     };
     let mut pool = SpotShadowPool::new(&gpu.device, &descriptor).expect("a valid pool");
@@ -77,9 +77,9 @@ fn drawn(importances: &[f32], max_views: u32, frames: usize) -> Vec<Vec<usize>> 
         let report = pool
             .record_frame(&mut encoder, &frame)
             .expect("a valid frame");
-        for view in &report.views {
+        for (index, view) in report.views.iter().enumerate() {
             match view.status {
-                ViewStatus::Drawn => drawn[view.layer as usize].push(step),
+                ViewStatus::Drawn => drawn[index].push(step),
                 status => assert_eq!(status, ViewStatus::Deferred),
             }
         }

@@ -7,6 +7,8 @@ struct ShadowDebugView {
     // Holds 1 in x where depth is near / distance (a local light), and 0 where it is linear (a
     // directional one). It is a vector, since uniforms are multiples of 16 bytes in OpenGL ES 3.0.
     local: vec4<u32>,
+    // Is the part of the layer that is shown: its first texel, and its size in texels.
+    texels: vec4<f32>,
 }
 
 @group(0) @binding(0) var<uniform> shadow_debug: ShadowDebugView;
@@ -36,7 +38,8 @@ fn shadow_debug_grey(view: ShadowViewUniform, texel: vec2<f32>, tangents: vec2<f
 @fragment
 fn shadow_debug_layer(vertex: ShadowFullscreenVertex) -> @location(0) vec4<f32> {
     let view = shadow_debug_views[0];
-    let texel = vertex.uv * view.map_size - view.mapping.middle;
+    let shown = shadow_debug.texels;
+    let texel = shown.xy + vertex.uv * shown.zw - view.mapping.middle;
     // A view into which nothing casts has texels without a size.
     if view.mapping.texel_size.x <= 0.0 {
         return vec4<f32>(1.0);

@@ -8,7 +8,8 @@ fn shadow_place_of_NAME(INDEX: u32, position: vec3<f32>) -> ShadowPlace {
     let mapping = shadow_views_NAME[view].mapping;
     let grid = shadow_views_NAME[view].grid;
     let position_light = shadow_along_face(face, from_light);
-    let light = shadow_views_NAME[ANY_VIEW];
+    var light = shadow_views_NAME[ANY_VIEW];
+    light.mapping.inner = shadow_views_NAME[INNER_VIEW].mapping.inner;
     var place = shadow_local_place(light, mapping, view, grid, position_light);
     place.inside = place.inside & (view < VIEW_COUNT);
     return place;

@@ -46,6 +46,10 @@ const FIRST_VIEW: u32 = 0u;
 // view of another light for an index that no slot has, so that it is always below VIEW_COUNT.
 const ANY_VIEW: u32 = 0u;
 
+// Is the view of the light of which the size counts: ANY_VIEW where all faces have the same, and
+// `view`, which is the view of the face, where each has its own.
+const INNER_VIEW: u32 = 0u;
+
 // Are the numbers of a cascade and of the next one, without suffix. In `cascades.wgsl` CASCADE is
 // the first one.
 const CASCADE: u32 = 0u;

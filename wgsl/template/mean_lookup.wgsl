@@ -22,7 +22,8 @@ fn shadow_NAME(INDEX: u32, position: vec3<f32>, normal: vec3<f32>) -> f32 {
         if place.inside {
             let normal_light = shadow_axes_of_NAME(INDEX, sampled, normal);
             let mapping = shadow_views_NAME[place.layer].mapping;
-            let receiver = shadow_BIAS(shadow_views_NAME[ANY_VIEW], mapping, place, normal_light);
+            var receiver = shadow_BIAS(shadow_views_NAME[ANY_VIEW], mapping, place, normal_light);
+            receiver.layer = LAYER;
             lit += shadow_FILTER(shadow_map_NAME, SAMPLER, receiver);
         } else {
             lit += 1.0;

@@ -162,7 +162,9 @@ fn set_side(side: &mut SideSettings, key: &str, value: &str) -> Option<()> {
         "still" => side.stability = Stability::TightFit,
         "half" if value == "1" => side.depth_format = DepthFormat::Unorm16,
         "half" => side.depth_format = DepthFormat::Float32,
-        "lamp_map" => side.lamp_map_size = value.parse().ok().filter(|n| (1..=4096).contains(n))?,
+        "lamp_map" => {
+            side.lamp_map_size = value.parse().ok().filter(|n| (16..=4096).contains(n))?
+        }
         "lamp_filter" => side.lamp_filter = filter(value)?,
         _ => return None,
     }

@@ -55,12 +55,12 @@ impl SideSettings {
         }
     }
 
-    /// Returns the descriptor of a pool of spot lights, which take no filter of directions, and
-    /// twice the texels of a lamp's face.
+    /// Returns the descriptor of a pool of spot lights, which take no filter of directions, and have
+    /// a quarter of the texels of the lamps.
     pub fn spots(&self, capacity: u32) -> PoolDescriptor<'static> {
         let lamps = self.lamps(capacity);
         PoolDescriptor {
-            map_size: 2 * self.lamp_map_size,
+            map_size: (self.lamp_map_size / 2).max(1),
             filter: match lamps.filter {
                 Filter::DirectionGrid { .. } | Filter::DirectionStar { .. } => Filter::Box,
                 filter => filter,
@@ -255,7 +255,6 @@ mod tests {
             side.lamps(32),
             PoolDescriptor {
                 capacity: 32,
-                map_size: 256,
                 filter: Filter::DirectionGrid { radius: 0.1 },
                 bias: Bias::Manual {
                     constant: 0.099999994,
@@ -269,6 +268,7 @@ mod tests {
             side.spots(4),
             PoolDescriptor {
                 capacity: 4,
+                map_size: 1024,
                 filter: Filter::Box,
                 bias: Bias::Manual {
                     constant: 0.099999994,

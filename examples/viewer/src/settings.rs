@@ -74,7 +74,7 @@ pub struct SideSettings {
     pub fade: f32,
     pub stability: Stability,
     pub depth_format: DepthFormat,
-    /// Is the number of texels per side of the maps of spots and lamps.
+    /// Is the number of texels per side of the layer that all lamps share; the spots have half of it.
     pub lamp_map_size: u32,
     pub lamp_filter: Filter,
 }
@@ -104,7 +104,7 @@ impl SideSettings {
             fade: 0.0,
             stability: Stability::TightFit,
             depth_format: DepthFormat::Float32,
-            lamp_map_size: 256,
+            lamp_map_size: 2048,
             lamp_filter: Filter::Tent3 { sharpness: 3.0 },
         }
     }

@@ -133,13 +133,13 @@ fn receivers_beyond_every_cascade_are_lit() {
     );
 }
 
-/// Layers of a pool lie side by side in one texture: beside a light that is completely dark, a
+/// The views of a pool lie side by side in one layer: beside a light that is completely dark, a
 /// light whose map is empty is lit up to the border of its map, and beyond.
 #[test]
 fn no_light_of_a_pool_reads_its_neighbours() {
     let gpu = gpu();
     let descriptor = PoolDescriptor {
-        map_size: 64,
+        map_size: 512,
         capacity: 3,
         filter: Filter::Tent7 { sharpness: 1.0 },
         ..Default::default()

@@ -63,6 +63,7 @@ fn endless_lights_are_as_the_truth_says() {
             for setting in settings {
                 let scene = scene(&setting.meshes);
                 let (casters, camera) = (&scene.list()[..], Some(&setting.camera));
+                lamp.reset_history();
                 // The least range has the nearest near plane.
                 lamp.record(setting.light, 20.0, camera, casters, &[]);
                 let ground = f64::from(ground);
@@ -109,10 +110,11 @@ fn a_bulb_around_the_light_hides_all() {
             let bulb = Mesh::sphere(setting.light.as_vec3(), 0.015, 8);
             setting.meshes.push(bulb);
             let scene = scene(&setting.meshes);
+            let (casters, camera) = (&scene.list()[..], Some(&setting.camera));
+            lamp.reset_history();
+            lamp.record(setting.light, f32::INFINITY, camera, casters, &[]);
             let truth = lamp.truth(&setting, &scene, (0.0, 0.0));
             assert_eq!(truth.counts()[1], 0);
-            let (casters, camera) = (&scene.list()[..], Some(&setting.camera));
-            lamp.record(setting.light, f32::INFINITY, camera, casters, &[]);
             let seen = lamp.ask().points(gpu(), &truth.points);
             let lit = seen.iter().filter(|seen| **seen > 0.0).count();
             let (name, count) = (lamp.name(), seen.len());

@@ -123,7 +123,7 @@ impl Lights {
         let device = &gpu.device;
         let map_size = 16;
         let pool = PoolDescriptor {
-            map_size,
+            map_size: 4 * map_size,
             capacity: 2,
             ..Default::default()
         };

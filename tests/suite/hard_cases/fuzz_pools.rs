@@ -29,7 +29,7 @@ fn any_coming_and_going_in_a_pool() {
     let gpu = gpu();
     let counts = Counts::default();
     let descriptor = PoolDescriptor {
-        map_size: 4,
+        map_size: 8,
         capacity: 3,
         ..Default::default()
     };

@@ -59,7 +59,7 @@ pub fn show(ui: &mut Ui, state: &mut State, scene: &Scene) {
     if scene.has_lamps {
         ui.separator();
         filter(ui, "filter of lamps", &mut side.lamp_filter, true);
-        map_size(ui, "texels of a lamp's face", &mut side.lamp_map_size, 1024);
+        map_size(ui, "texels of all lamps", &mut side.lamp_map_size, 4096);
     }
 }
 
