@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::Aabb;
 use crate::cast::mesh_geometry::MeshGeometry;
 use crate::cast::{CasterInstances, Revision, ShadowCaster};
-use crate::fit::{BoundsTree, CasterShape};
+use crate::fit::{BoundsTree, CasterShape, ChangeLog, ChangedBoxes};
 
 /// Holds what the methods of a caster returned, apart from its bounds, or what they say of one of
 /// its instances.
@@ -115,7 +115,7 @@ fn batch_hash(geometry: &MeshGeometry, mirrors: bool) -> NonZeroU32 {
 pub(crate) struct CastersVersion {
     /// Identifies the records in the process.
     source: u64,
-    /// Counts the changes.
+    /// Is the number of the next change.
     changes: u64,
     /// Counts the frames in which a caster may always look different; 0 where there is none.
     frame: u64,
@@ -147,7 +147,12 @@ pub(crate) struct CasterRecords {
     pub broken: BTreeMap<u32, Aabb>,
     /// Counts the casters that may look different in every frame.
     pub always_changing: usize,
-    version: CastersVersion,
+    /// Holds the changes of all entries that cast or receive.
+    log: ChangeLog,
+    /// Identifies the records in the process.
+    source: u64,
+    /// Counts the frames in which a caster may always look different; 0 where there is none.
+    frame: u64,
 }
 
 static NEXT_SOURCE: AtomicU64 = AtomicU64::new(0);
@@ -169,22 +174,31 @@ impl CasterRecords {
             tree: has_tree.then(BoundsTree::default),
             broken: BTreeMap::new(),
             always_changing: 0,
-            version: CastersVersion {
-                source: NEXT_SOURCE.fetch_add(1, Ordering::Relaxed),
-                changes: 0,
-                frame: 0,
-            },
+            log: ChangeLog::default(),
+            source: NEXT_SOURCE.fetch_add(1, Ordering::Relaxed),
+            frame: 0,
         }
     }
 
     /// Returns the number of the present state.
     pub fn version(&self) -> CastersVersion {
-        self.version
+        CastersVersion {
+            source: self.source,
+            changes: self.log.next(),
+            frame: self.frame,
+        }
+    }
+
+    /// Returns what has changed from one state to another, the present one, or `None` where that
+    /// is not known.
+    pub fn changes(&self, from: &CastersVersion, to: &CastersVersion) -> Option<ChangedBoxes<'_>> {
+        let same = from.source == to.source && from.frame == to.frame;
+        same.then(|| self.log.since(from.changes)).flatten()
     }
 
     /// Makes the present state another than that of all frames before.
     pub fn count_frame(&mut self) {
-        self.version.frame += 1;
+        self.frame += 1;
     }
 
     /// Returns the number of entries.
@@ -233,7 +247,7 @@ impl CasterRecords {
             let gone = self.facts.drain(count..);
             self.always_changing -= gone.filter(|facts| facts.revision.is_none()).count();
             self.broken.split_off(&(count as u32));
-            self.version.changes += 1;
+            self.log.add_unknown();
         }
     }
 
@@ -262,28 +276,24 @@ impl CasterRecords {
             self.receives.push(receives);
             self.shapes.push(shape);
             self.facts.push(facts);
-            self.version.changes += 1;
             self.follow(index, &Aabb::EMPTY, &either(&casts, &receives));
             return;
         }
+        self.always_changing -= usize::from(self.facts[at].revision.is_none());
         let changes_fit =
             self.casts[at] != casts || self.receives[at] != receives || self.shapes[at] != shape;
-        if changes_fit {
+        if changes_fit || self.facts[at] != facts {
             let before = either(&self.casts[at], &self.receives[at]);
             self.casts[at] = casts;
             self.receives[at] = receives;
             self.shapes[at] = shape;
-            self.version.changes += 1;
-            self.follow(index, &before, &either(&casts, &receives));
-        }
-        self.always_changing -= usize::from(self.facts[at].revision.is_none());
-        if self.facts[at] != facts {
             self.facts[at] = facts;
-            self.version.changes += 1;
+            self.follow(index, &before, &either(&casts, &receives));
         }
     }
 
     fn follow(&mut self, index: u32, before: &Aabb, bounds: &Aabb) {
+        self.log.add(index, before, bounds);
         if let Some(tree) = &mut self.tree {
             tree.set(index, before, bounds);
         }

@@ -5,7 +5,7 @@ use crate::cast::caster_records::{CasterFacts, CasterRecord, CasterRecords, Cast
 use crate::cast::instances::Instance;
 use crate::cast::mesh_geometry::MeshGeometry;
 use crate::cast::{CasterInstances, Casters, ShadowCaster};
-use crate::fit::{Boxes, CasterShape};
+use crate::fit::{Boxes, CasterShape, ChangedBoxes};
 
 /// Names bounds of a frame that have a NaN or an infinite corner and are not empty. The object that
 /// they bound is left out of the frame: it neither casts nor receives, and all other objects keep
@@ -172,5 +172,10 @@ impl<'a> FrameCasters<'a> {
     /// Returns the number of the state that all of this is in.
     pub fn version(&self) -> CastersVersion {
         self.version
+    }
+
+    /// Returns the changes since an earlier state, or `None` where they are not known.
+    pub fn changes_since(&self, version: &CastersVersion) -> Option<ChangedBoxes<'a>> {
+        self.records.changes(version, &self.version)
     }
 }

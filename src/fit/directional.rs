@@ -3,10 +3,12 @@
 
 use crate::fit::axes::{LightAxes, LightBox, LightSpace};
 use crate::fit::boxes::Boxes;
+use crate::fit::camera::CameraFrustum;
 use crate::fit::cascade_bounds::Cascade;
 use crate::fit::cascade_layout::CascadeLayout;
 use crate::fit::caster_parts::PartScratch;
-use crate::fit::directional_casters::{DirectionalCaster, DirectionalCasters};
+use crate::fit::change_log::ChangedBoxes;
+use crate::fit::directional_casters::{DirectionalCaster, DirectionalCasters, light_box_around};
 use crate::fit::directional_input::{FitInput, FitLimits, Region};
 use crate::fit::extruded_rect::ExtrudedRect;
 use crate::fit::footprint::{FootprintScratch, SliceReport};
@@ -14,7 +16,7 @@ use crate::fit::layout::HeldLayout;
 use crate::fit::layout_choice::{Layout, Prediction};
 use crate::fit::layout_samples::{SampleScratch, Sampled};
 use crate::fit::map_rect::{BoundsRequest, HeldBounds, HeldDepth, LightSpaceBounds};
-use crate::fit::required::{camera_slice, checked_spacing, held_depths, required_box};
+use crate::fit::required::{camera_slice, checked_spacing, held_depths, is_fine, required_box};
 use crate::fit::spacing::Spacing;
 use crate::fit::split::MAX_CASCADES;
 use crate::fit::visible::{SeenBounds, SeenLists};
@@ -44,6 +46,9 @@ pub(crate) struct DirectionalFit {
     pub slices: [Option<SliceReport>; MAX_CASCADES],
     /// Holds the layout that was found, where none is given.
     layout: Option<HeldLayout>,
+    /// Holds, across the light, all casters that the fit depends on; `None` where it may depend on
+    /// any.
+    influence: Option<LightBox>,
 }
 
 /// Holds lists that are reused from frame to frame.
@@ -110,6 +115,11 @@ impl DirectionalFit {
         next.visible = Some(visible);
         let depths = held_depths(&visible, history.held_depths.as_ref());
         next.held_depths = depths.or(history.held_depths);
+        let mut influence = LightBox::EMPTY;
+        if visible.render_min.cmple(visible.render_max).all() {
+            influence.union(&visible_box(&input.space, &visible));
+        }
+        let mut depends_on_all = false;
         let limits = &next.find_layout(input, limits, &visible, scratch);
         if next.layout() != history.layout() {
             next.held = Default::default();
@@ -119,6 +129,10 @@ impl DirectionalFit {
             let slice = camera_slice(input, limits, &visible, depths, cascade);
             let seen = &scratch.lists.seen;
             let required = required_box(input, limits, slice.as_ref(), seen, cascade);
+            if let Some(required) = &required {
+                influence.union(required);
+                depends_on_all |= !is_fine(input, required);
+            }
             let held = next.held[cascade].as_ref();
             let held_bounds = match required {
                 Some(required) if any_casts => {
@@ -140,12 +154,16 @@ impl DirectionalFit {
             next.requests[cascade] = request;
             next.held[cascade] = held_bounds.or(next.held[cascade]);
             let light_bounds = held_bounds.map(|held| held.bounds());
+            if let Some(light_bounds) = &light_bounds {
+                influence.union(&light_bounds.bounds());
+            }
             next.light_bounds[cascade] = light_bounds;
             next.slices[cascade] = slice.zip(light_bounds).map(|(slice, light_bounds)| {
                 let scratch = &mut scratch.footprint;
                 slice.report(&input.space, &light_bounds.rect, scratch)
             });
         }
+        next.influence = (!depends_on_all).then_some(influence);
         Ok(next)
     }
 
@@ -173,6 +191,29 @@ impl DirectionalFit {
             }
         }
         Some(next)
+    }
+
+    /// Returns whether the fit may become another, or may have other casters, where these boxes
+    /// change. `input` is otherwise that of the last fit.
+    pub fn may_change(&self, input: &FitInput<'_>, changes: ChangedBoxes<'_>) -> bool {
+        let (Some(influence), Some(visible)) = (&self.influence, &self.visible) else {
+            return true;
+        };
+        let cameras = match input.region {
+            Region::Cameras(cameras) => cameras,
+            Region::Bounds(_) => &[],
+            Region::Everything => return !changes.is_empty(),
+        };
+        let space = &input.space;
+        let spacing = Spacing::around(space.origin, influence);
+        let toward_light = space.axes.toward_light();
+        changes.iter().any(|changed| {
+            let bounds = &changed.bounds;
+            let is_seen = |camera: &CameraFrustum| !camera.planes.surely_misses(bounds);
+            cameras.iter().any(is_seen)
+                || visible.can_be_shadowed_by(bounds, toward_light)
+                    && light_box_around(space, spacing, bounds).overlaps_xy(influence)
+        })
     }
 
     /// Returns the settings for this frame, with the layout that is found where none is given.
@@ -267,6 +308,11 @@ fn find_visible(input: &FitInput<'_>, lists: &mut SeenLists) -> SeenBounds {
     }
 }
 
+/// Returns the light-space box around all that is visible.
+fn visible_box(space: &LightSpace, visible: &SeenBounds) -> LightBox {
+    space.bounds(&Aabb::around(visible.render_min, visible.render_max))
+}
+
 /// Replaces casters that are much larger than all others by the parts of them that count. In a
 /// given box everything receives, so that all of a caster counts.
 fn divide_casters(input: &FitInput<'_>, scratch: &mut FitScratch) {
@@ -275,8 +321,7 @@ fn divide_casters(input: &FitInput<'_>, scratch: &mut FitScratch) {
         return;
     }
     let visible = &scratch.visible;
-    let visible_box = Aabb::around(visible.render_min, visible.render_max);
-    let visible_box = input.space.bounds(&visible_box);
+    let visible_box = visible_box(&input.space, visible);
     let candidates = DirectionalCasters {
         space: &input.space,
         boxes: input.casters,

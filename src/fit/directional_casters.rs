@@ -30,6 +30,14 @@ pub(crate) struct DirectionalCasters<'a> {
     pub listed: &'a [DirectionalCaster],
 }
 
+/// Returns a box in light space that surely holds that of any box in `around`, grown as
+/// [`Spacing::widest`] does.
+pub(crate) fn light_box_around(space: &LightSpace, spacing: Spacing, around: &Aabb) -> LightBox {
+    let light = space.bounds(around);
+    let reach = light.min.abs().max(light.max.abs()).element_sum();
+    light.grown(spacing.error() + AROUND_STEPS * f64::EPSILON * reach)
+}
+
 impl<'a> DirectionalCasters<'a> {
     /// Lists the casters that can shadow something, where no tree finds them.
     pub fn list(
@@ -74,19 +82,13 @@ impl<'a> DirectionalCasters<'a> {
             return;
         }
         let toward_light = self.space.axes.toward_light();
-        let error = spacing.error();
         self.boxes.walk(
             state,
             |state, around| {
                 if !self.visible.can_be_shadowed_by(around, toward_light) {
                     return false;
                 }
-                let light = self.space.bounds(around);
-                let reach = light.min.abs().max(light.max.abs()).element_sum();
-                enters(
-                    state,
-                    &light.grown(error + AROUND_STEPS * f64::EPSILON * reach),
-                )
+                enters(state, &light_box_around(self.space, spacing, around))
             },
             |state, index, bounds| {
                 if self.visible.can_be_shadowed_by(bounds, toward_light) && !self.is_divided(index)

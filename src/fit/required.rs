@@ -36,6 +36,13 @@ pub(crate) fn checked_spacing(
     spacing.checked(extent, limits.map_size, floor, distance)
 }
 
+/// Returns whether f64 is fine enough for [`checked_spacing`] wherever other casters and receivers
+/// are.
+pub(crate) fn is_fine(input: &FitInput<'_>, required: &LightBox) -> bool {
+    let spacing = Spacing::around(input.space.origin, required);
+    spacing.finest_texel() <= input.texel_floor(required, required.max.z)
+}
+
 /// Returns the wider side, seen from the light, of all casters and receivers of the frame together.
 fn widest_given(input: &FitInput<'_>) -> f64 {
     let receivers = input.receivers;

@@ -131,7 +131,8 @@ impl LocalLights {
         max_views: Option<u32>,
     ) -> Result<&ShadowReport, ShadowError> {
         if self.is_as_before(frame, lights) {
-            return Ok(self.maps.report());
+            self.last_frame = Some(frame.version);
+            return Ok(self.maps.keep(&frame.casters));
         }
         self.last_frame = None;
         let mut candidates = std::mem::take(&mut self.candidates);
@@ -212,18 +213,21 @@ impl LocalLights {
         Ok(report)
     }
 
-    /// Returns whether a frame is the last one again and leaves all views as they are. The time
-    /// that has passed is then counted.
+    /// Returns whether a frame leaves all views as they are: nothing that they depend on has
+    /// changed since the last frame. The time that has passed is then counted.
     fn is_as_before(&mut self, frame: &ShadowFrame<'_>, lights: &[LocalPlacement]) -> bool {
-        if self.last_frame != Some(frame.version)
-            || self.maps.unchanged_report().is_none()
-            || self.last_lights != lights
-        {
+        let last_frame = self.last_frame.as_ref();
+        let Some(changes) = last_frame.and_then(|last| frame.changes_since(last)) else {
+            return false;
+        };
+        if !self.maps.is_unchanged() || self.last_lights != lights {
             return false;
         }
         self.fits.clear();
         for light in lights {
-            let Some(fit) = self.slots[light.slot as usize].fit.again() else {
+            let fit = &self.slots[light.slot as usize].fit;
+            let may_change = fit.may_change(&self.input(frame, light), changes);
+            let Some(fit) = (!may_change).then(|| fit.again()).flatten() else {
                 return false;
             };
             self.fits.push(fit);
@@ -234,19 +238,14 @@ impl LocalLights {
         true
     }
 
-    /// Fits and culls one light, and returns what would refresh it.
-    fn candidate(
-        &mut self,
-        frame: &ShadowFrame<'_>,
-        light: &LocalPlacement,
-    ) -> Result<Candidate, ShadowError> {
-        let maps = &mut self.maps;
-        let axes = &light.axes[..light.view_count as usize];
-        let input = LocalInput {
+    /// Returns the input of the fit of a light.
+    fn input<'a>(&self, frame: &ShadowFrame<'a>, light: &'a LocalPlacement) -> LocalInput<'a> {
+        let maps = &self.maps;
+        LocalInput {
             origin: frame.origin,
             position_world: light.position_world,
             range: f64::from(light.range),
-            views: axes,
+            views: &light.axes[..light.view_count as usize],
             receiver_tangent: light.tangent,
             caster_tangent: light.tangent
                 * border(maps.map_size(), maps.sampling().border_texels()),
@@ -256,7 +255,18 @@ impl LocalLights {
             receivers: frame.receivers,
             map_size: maps.map_size(),
             margin_texels: maps.sampling().margin_texels(),
-        };
+        }
+    }
+
+    /// Fits and culls one light, and returns what would refresh it.
+    fn candidate(
+        &mut self,
+        frame: &ShadowFrame<'_>,
+        light: &LocalPlacement,
+    ) -> Result<Candidate, ShadowError> {
+        let input = self.input(frame, light);
+        let maps = &mut self.maps;
+        let axes = input.views;
         let mut drawn: [Vec<u32>; MAX_LOCAL_VIEWS] = std::array::from_fn(|_| maps.spare_list());
         let held = &self.slots[light.slot as usize].fit;
         let fit = held.fit(&input, &mut self.reached, &mut drawn);

@@ -27,6 +27,7 @@ mod device_limits;
 mod device_loss;
 mod direction_filters;
 mod distance_limit;
+mod distant_changes;
 mod emitted_wgsl;
 mod engine_wgsl;
 mod errors;
