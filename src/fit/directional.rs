@@ -330,12 +330,7 @@ fn divide_casters(input: &FitInput<'_>, scratch: &mut FitScratch) {
         listed: &scratch.casters,
     };
     let parts = &mut scratch.parts;
-    parts.find(
-        input.shapes,
-        &candidates,
-        &visible_box,
-        &scratch.lists.parts,
-    );
+    parts.find(&candidates, &visible_box, &scratch.lists.parts);
 }
 
 impl FitScratch {

@@ -49,12 +49,13 @@ impl<'a> DirectionalCasters<'a> {
         listed.clear();
         if boxes.tree.is_none() {
             let toward_light = space.axes.toward_light();
-            boxes.for_each(|index, bounds| {
-                if visible.can_be_shadowed_by(bounds, toward_light) {
-                    let light = space.bounds(bounds);
-                    listed.push(DirectionalCaster { index, light });
-                }
-            });
+            let casters = boxes.iter();
+            let casters =
+                casters.filter(|(_, bounds)| visible.can_be_shadowed_by(bounds, toward_light));
+            listed.extend(casters.map(|(index, bounds)| DirectionalCaster {
+                index,
+                light: space.bounds(bounds),
+            }));
         }
     }
 

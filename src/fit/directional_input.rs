@@ -7,7 +7,6 @@ use crate::fit::axes::{LightBox, LightSpace};
 use crate::fit::boxes::Boxes;
 use crate::fit::camera::CameraFrustum;
 use crate::fit::cascade_layout::CascadeLayout;
-use crate::fit::caster_shape::CasterShape;
 use crate::fit::split::{MAX_CASCADES, SplitRule};
 use crate::fit::stability::Stability;
 use crate::fit::texel_rect::TexelRect;
@@ -31,8 +30,6 @@ pub(crate) struct FitInput<'a> {
     pub region: Region<'a>,
     /// Holds the bounds of what casts; empty ones cast nothing.
     pub casters: Boxes<'a>,
-    /// Has one entry per caster.
-    pub shapes: &'a [CasterShape],
     pub receivers: Receivers<'a>,
 }
 

@@ -75,7 +75,7 @@ mod visible;
 pub use axes::LightAxes;
 pub(crate) use axes::{LightBox, LightSpace};
 pub(crate) use bounds_tree::BoundsTree;
-pub(crate) use boxes::Boxes;
+pub(crate) use boxes::{Boxes, CasterBox, Role};
 pub(crate) use camera::CameraFrustum;
 pub use camera::CameraView;
 pub use cascade_layout::CascadeLayout;

@@ -161,10 +161,10 @@ impl<'a> Receivers<'a> {
 
     /// Returns the bounds that are not empty, with the casters whose surfaces they are.
     pub fn iter(&self) -> impl Iterator<Item = (&'a Aabb, Option<u32>)> + use<'a> {
-        let given = self.given.iter().map(|bounds| (bounds, None));
-        let casters = (0u32..).zip(self.casters.bounds);
-        let all = given.chain(casters.map(|(index, bounds)| (bounds, Some(index))));
-        all.filter(|(bounds, _)| !bounds.is_empty())
+        let given = self.given.iter().filter(|bounds| !bounds.is_empty());
+        let casters = self.casters.iter();
+        let casters = casters.map(|(index, bounds)| (bounds, Some(index)));
+        given.map(|bounds| (bounds, None)).chain(casters)
     }
 }
 

@@ -263,7 +263,6 @@ impl DirectionalShadow {
             },
             region: frame.region,
             casters: frame.casters.casting(),
-            shapes: frame.casters.shapes(),
             receivers: frame.receivers,
         };
         if let Some(fit) = self.fit_as_before(last, frame, light, &input) {
