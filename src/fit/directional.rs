@@ -8,6 +8,7 @@ use crate::fit::cascade_bounds::Cascade;
 use crate::fit::cascade_layout::CascadeLayout;
 use crate::fit::caster_parts::PartScratch;
 use crate::fit::change_log::ChangedBoxes;
+use crate::fit::culling::CulledFor;
 use crate::fit::directional_casters::{DirectionalCaster, DirectionalCasters, light_box_around};
 use crate::fit::directional_input::{FitInput, FitLimits, Region};
 use crate::fit::extruded_rect::ExtrudedRect;
@@ -38,6 +39,8 @@ pub(crate) struct DirectionalFit {
     requests: [Option<BoundsRequest>; MAX_CASCADES],
     /// Bounds what was visible.
     visible: Option<SeenBounds>,
+    /// Holds what the casters of each cascade are culled for.
+    culled_for: [Option<CulledFor>; MAX_CASCADES],
     /// Holds the axes of the light in the last frame.
     axes: Option<LightAxes>,
     /// Holds the depths along the view between which receivers are visible.
@@ -99,7 +102,9 @@ impl DirectionalFit {
     ) -> Result<Self, ShadowError> {
         let visible = find_visible(input, &mut scratch.lists);
         scratch.visible = visible;
-        DirectionalCasters::list(&input.space, input.casters, &visible, &mut scratch.casters);
+        let held = self.culled_for.iter().flatten();
+        let shadowed = held.fold(visible, |all, held| all.union(&held.visible));
+        DirectionalCasters::list(&input.space, input.casters, &shadowed, &mut scratch.casters);
         divide_casters(input, scratch);
         let casters = scratch.whole_casters(&input.space, input.casters);
         let any_casts = !scratch.parts.parts.is_empty()
@@ -154,6 +159,9 @@ impl DirectionalFit {
             next.requests[cascade] = request;
             next.held[cascade] = held_bounds.or(next.held[cascade]);
             let light_bounds = held_bounds.map(|held| held.bounds());
+            let is_held = light_bounds == history.light_bounds[cascade];
+            let culled_for = history.culled_for[cascade].filter(|_| is_held);
+            next.culled_for[cascade] = Some(CulledFor::following(culled_for, &visible));
             if let Some(light_bounds) = &light_bounds {
                 influence.union(&light_bounds.bounds());
             }
@@ -181,6 +189,9 @@ impl DirectionalFit {
         if !same_depths {
             return None;
         }
+        for held in next.culled_for.iter_mut().flatten() {
+            *held = held.again(self.visible.as_ref()?)?;
+        }
         if let Some(layout) = &self.layout {
             next.layout = Some(layout.without_prediction()?);
         }
@@ -207,6 +218,8 @@ impl DirectionalFit {
         let space = &input.space;
         let spacing = Spacing::around(space.origin, influence);
         let toward_light = space.axes.toward_light();
+        let held = self.culled_for.iter().flatten();
+        let visible = held.fold(*visible, |all, held| all.union(&held.visible));
         changes.iter().any(|changed| {
             let bounds = &changed.bounds;
             let is_seen = |camera: &CameraFrustum| !camera.planes.surely_misses(bounds);
@@ -260,7 +273,7 @@ impl DirectionalFit {
 
     /// Returns the light-space bounds of a cascade that something casts into, and adds its casters
     /// to `drawn`: those of which some part is within the map rectangle, seen along the light, and
-    /// in front of the far plane. `scratch` is the one that the fit has filled.
+    /// in front of the far plane, and that can shadow what is visible or was of late. `scratch` is the one that the fit has filled.
     pub fn cull(
         &self,
         cascade: usize,
@@ -274,7 +287,11 @@ impl DirectionalFit {
         let reaches = |light: &LightBox, bounds: &Aabb| {
             light_bounds.holds_part_of(&spacing.widest(light)) && volume.meets(bounds)
         };
-        scratch.whole_casters(&input.space, input.casters).walk(
+        let casters = DirectionalCasters {
+            visible: &self.culled_for[cascade].as_ref()?.visible,
+            ..scratch.whole_casters(&input.space, input.casters)
+        };
+        casters.walk(
             spacing,
             drawn,
             |_, around| light_bounds.holds_part_of(around),

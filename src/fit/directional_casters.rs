@@ -26,7 +26,8 @@ pub(crate) struct DirectionalCasters<'a> {
     pub visible: &'a SeenBounds,
     /// Holds the casters that are divided into parts, in ascending order. They do not count.
     pub divided: &'a [u32],
-    /// Holds the casters where no tree finds them; those that are divided are among them.
+    /// Holds the casters where no tree finds them; those that are divided are among them, and
+    /// others that can shadow nothing visible.
     pub listed: &'a [DirectionalCaster],
 }
 
@@ -69,20 +70,19 @@ impl<'a> DirectionalCasters<'a> {
         mut enters: impl FnMut(&S, &LightBox) -> bool,
         mut meet: impl FnMut(&mut S, u32, &'a Aabb, &LightBox),
     ) {
+        let toward_light = self.space.axes.toward_light();
+        let counts = |index: u32, bounds: &Aabb| {
+            self.visible.can_be_shadowed_by(bounds, toward_light) && !self.is_divided(index)
+        };
         if self.boxes.tree.is_none() {
             for caster in self.listed {
-                if !self.is_divided(caster.index) {
-                    meet(
-                        state,
-                        caster.index,
-                        self.boxes.at(caster.index),
-                        &caster.light,
-                    );
+                let bounds = self.boxes.at(caster.index);
+                if counts(caster.index, bounds) {
+                    meet(state, caster.index, bounds, &caster.light);
                 }
             }
             return;
         }
-        let toward_light = self.space.axes.toward_light();
         self.boxes.walk(
             state,
             |state, around| {
@@ -92,8 +92,7 @@ impl<'a> DirectionalCasters<'a> {
                 enters(state, &light_box_around(self.space, spacing, around))
             },
             |state, index, bounds| {
-                if self.visible.can_be_shadowed_by(bounds, toward_light) && !self.is_divided(index)
-                {
+                if counts(index, bounds) {
                     meet(state, index, bounds, &self.space.bounds(bounds));
                 }
             },

@@ -14,6 +14,7 @@
 //! image_corners.rs  the sphere around a slice of a camera's view
 //! bounds_tree/    a tree over boxes; boxes.rs: lists of boxes, with a tree or without
 //! change_log.rs   which boxes have changed lately
+//! culling.rs      for what the casters of a cascade are culled
 //! directional_casters.rs  the casters of a frame as a directional light sees them
 //! visible.rs      what a camera sees of the receivers
 //! extruded_rect.rs  what reaches into the extruded map rectangle
@@ -44,6 +45,7 @@ mod cascade_layout;
 mod caster_parts;
 mod caster_shape;
 mod change_log;
+mod culling;
 mod directional;
 mod directional_casters;
 mod directional_input;

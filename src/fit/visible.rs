@@ -80,7 +80,7 @@ impl Seen {
 }
 
 /// Holds the bounds of all that is seen, in render space and in depth along the view.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SeenBounds {
     pub render_min: DVec3,
     pub render_max: DVec3,
@@ -123,6 +123,16 @@ impl SeenBounds {
                 high[axis] >= self.render_min[axis] && low[axis] <= self.render_max[axis]
             }
         })
+    }
+
+    /// Returns the bounds of what is in either of two.
+    pub fn union(&self, other: &Self) -> Self {
+        Self {
+            render_min: self.render_min.min(other.render_min),
+            render_max: self.render_max.max(other.render_max),
+            depth_near: self.depth_near.min(other.depth_near),
+            depth_far: self.depth_far.max(other.depth_far),
+        }
     }
 
     fn include(&mut self, seen: &Seen, render_min: DVec3, render_max: DVec3) {
