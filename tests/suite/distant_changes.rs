@@ -6,56 +6,13 @@ use glam::{DVec3, Vec3};
 use shadow_support::camera::Camera;
 use shadow_support::random::Random;
 use wgpu_shadows::{
-    Aabb, CasterId, CasterPipeline, CasterSet, Casters, Coverage, Revision, ShadowCaster,
-    ShadowFrameDescriptor, ShadowScene, ShadowView, caster::CasterPipelineDescriptor,
-    caster::CasterShape, report::ViewStatus,
+    Aabb, CasterId, CasterPipeline, CasterSet, Casters, Coverage, Revision, ShadowFrameDescriptor,
+    ShadowScene, caster::CasterPipelineDescriptor, caster::CasterShape, report::ViewStatus,
 };
 
 use crate::fixtures::any_light::AnyLight;
+use crate::fixtures::body::Body;
 use crate::fixtures::gpu::vulkan;
-
-/// Is a caster that draws nothing.
-struct Body {
-    pipeline: CasterPipeline,
-    bounds: Aabb,
-    casts: bool,
-    receives: bool,
-    shape: CasterShape,
-    triangles: u32,
-    revision: Revision,
-}
-
-impl ShadowCaster for Body {
-    fn bounds(&self) -> Aabb {
-        self.bounds
-    }
-
-    fn pipeline(&self) -> &CasterPipeline {
-        &self.pipeline
-    }
-
-    fn draw(&self, _: &mut wgpu::RenderPass<'_>, _: &ShadowView) {}
-
-    fn casts(&self) -> bool {
-        self.casts
-    }
-
-    fn receives(&self) -> bool {
-        self.receives
-    }
-
-    fn shape(&self) -> CasterShape {
-        self.shape
-    }
-
-    fn triangles(&self) -> u32 {
-        self.triangles
-    }
-
-    fn revision(&self) -> Option<Revision> {
-        Some(self.revision)
-    }
-}
 
 /// Holds bodies, most of them far from all lights and cameras.
 struct Field {

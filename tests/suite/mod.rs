@@ -77,4 +77,5 @@ mod spot;
 mod spot_input;
 mod stability;
 mod texels_by_samples;
+mod walking;
 mod without_gather;
