@@ -36,9 +36,9 @@ fn crowd() -> CasterSet<Body> {
 }
 
 /// Checks that a camera that walks by 0.1 m a frame does not have its maps drawn anew for every
-/// caster that it leaves behind. In the first version of this test four fifths of all views were
-/// drawn in each frame, because some caster could no longer shadow what was seen; now maps are
-/// drawn where their windows move, or where more comes into view. A fifth leaves room for both.
+/// caster that it leaves behind. Where each of them is left out at once, more than a third of the
+/// casters in the views are drawn in each frame (86 765 of 245 581 in all). Held, maps are drawn
+/// where their windows move, or where more comes into view; a fifth leaves room for both.
 /// Where the camera stands still, what it left behind is dropped, once.
 #[test]
 fn casters_that_a_camera_leaves_behind_are_kept_in_the_maps() {
