@@ -264,7 +264,7 @@ mod tests {
                 role: Role::Casts,
                 tree: None,
             },
-            visible: &SeenBounds::NOTHING,
+            visible: &SeenBounds::of_boxes([&Aabb::new(Vec3::NEG_INFINITY, Vec3::INFINITY)]),
             divided: &[],
             listed: &listed,
         };
