@@ -117,8 +117,10 @@
 //!
 //! Both give the same maps, bit for bit. The order of casters means nothing, neither that of a list
 //! nor that in which a set was filled: a view is kept while the revisions of its casters are the
-//! same. Where a whole frame is as the one before, with the same cameras and lights, lights do
-//! nothing at all.
+//! same. Where cameras and lights are those of the frame before, a light does nothing at all unless
+//! some caster has changed within its reach: where it lights what is seen, or for a directional
+//! light between that and the light. That holds for up to 4096 changes in a frame, and while no
+//! caster is without a [`ShadowCaster::revision`].
 //!
 //! # Which filter and bias
 //!

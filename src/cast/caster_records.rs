@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::Aabb;
 use crate::cast::mesh_geometry::MeshGeometry;
 use crate::cast::{CasterInstances, Revision, ShadowCaster};
-use crate::fit::{BoundsTree, CasterShape};
+use crate::fit::{BoundsTree, CasterBox, ChangeLog, ChangedBoxes};
 
 /// Holds what the methods of a caster returned, apart from its bounds, or what they say of one of
 /// its instances.
@@ -42,10 +42,7 @@ impl CasterFacts {
 
 /// Is what the methods of one caster returned, or what they say of one of its instances.
 pub(crate) struct CasterRecord {
-    bounds: Aabb,
-    casts: bool,
-    receives: bool,
-    shape: CasterShape,
+    member: CasterBox,
     facts: CasterFacts,
 }
 
@@ -56,10 +53,12 @@ impl CasterRecord {
         let (casts, receives) = (caster.casts(), caster.receives());
         let Some(instances) = caster.instances() else {
             return take(Self {
-                bounds: caster.bounds(),
-                casts,
-                receives,
-                shape: caster.shape(),
+                member: CasterBox {
+                    bounds: caster.bounds(),
+                    casts,
+                    receives,
+                    shape: caster.shape(),
+                },
                 facts: CasterFacts {
                     listed,
                     instance: None,
@@ -80,12 +79,14 @@ impl CasterRecord {
         let batches = [false, true].map(|mirrors| Some(batch_hash(geometry, mirrors)));
         for (number, instance) in (0u32..).zip(instances) {
             take(Self {
-                bounds: instance.bounds_render,
-                casts,
-                receives,
-                shape: match geometry.matrix_layout() {
-                    Some(_) => shape_model.transformed(&instance.render_from_model),
-                    None => shape_model,
+                member: CasterBox {
+                    bounds: instance.bounds_render,
+                    casts,
+                    receives,
+                    shape: match geometry.matrix_layout() {
+                        Some(_) => shape_model.transformed(&instance.render_from_model),
+                        None => shape_model,
+                    },
                 },
                 facts: CasterFacts {
                     listed,
@@ -115,7 +116,7 @@ fn batch_hash(geometry: &MeshGeometry, mirrors: bool) -> NonZeroU32 {
 pub(crate) struct CastersVersion {
     /// Identifies the records in the process.
     source: u64,
-    /// Counts the changes.
+    /// Is the number of the next change.
     changes: u64,
     /// Counts the frames in which a caster may always look different; 0 where there is none.
     frame: u64,
@@ -135,19 +136,21 @@ impl CastersVersion {
 /// one that neither casts nor receives.
 #[derive(Debug)]
 pub(crate) struct CasterRecords {
-    /// Has one entry per caster, empty for one that does not cast.
-    pub casts: Vec<Aabb>,
-    /// Has one entry per caster, empty for one that does not receive.
-    pub receives: Vec<Aabb>,
-    pub shapes: Vec<CasterShape>,
+    /// Has one entry per caster.
+    pub boxes: Vec<CasterBox>,
     pub facts: Vec<CasterFacts>,
-    /// Finds casters by the box around both of their bounds; `None` where none is kept.
+    /// Finds casters by their bounds; `None` where none is kept.
     pub tree: Option<BoundsTree>,
     /// Holds the bounds that are neither finite nor empty.
     pub broken: BTreeMap<u32, Aabb>,
     /// Counts the casters that may look different in every frame.
     pub always_changing: usize,
-    version: CastersVersion,
+    /// Holds the changes of all entries that cast or receive.
+    log: ChangeLog,
+    /// Identifies the records in the process.
+    source: u64,
+    /// Counts the frames in which a caster may always look different; 0 where there is none.
+    frame: u64,
 }
 
 static NEXT_SOURCE: AtomicU64 = AtomicU64::new(0);
@@ -162,29 +165,36 @@ impl CasterRecords {
     /// Makes an empty list, with a tree that follows it or without one.
     pub fn new(has_tree: bool) -> Self {
         Self {
-            casts: Vec::new(),
-            receives: Vec::new(),
-            shapes: Vec::new(),
+            boxes: Vec::new(),
             facts: Vec::new(),
             tree: has_tree.then(BoundsTree::default),
             broken: BTreeMap::new(),
             always_changing: 0,
-            version: CastersVersion {
-                source: NEXT_SOURCE.fetch_add(1, Ordering::Relaxed),
-                changes: 0,
-                frame: 0,
-            },
+            log: ChangeLog::default(),
+            source: NEXT_SOURCE.fetch_add(1, Ordering::Relaxed),
+            frame: 0,
         }
     }
 
     /// Returns the number of the present state.
     pub fn version(&self) -> CastersVersion {
-        self.version
+        CastersVersion {
+            source: self.source,
+            changes: self.log.next(),
+            frame: self.frame,
+        }
+    }
+
+    /// Returns what has changed from one state to another, the present one, or `None` where that
+    /// is not known.
+    pub fn changes(&self, from: &CastersVersion, to: &CastersVersion) -> Option<ChangedBoxes<'_>> {
+        let same = from.source == to.source && from.frame == to.frame;
+        same.then(|| self.log.since(from.changes)).flatten()
     }
 
     /// Makes the present state another than that of all frames before.
     pub fn count_frame(&mut self) {
-        self.version.frame += 1;
+        self.frame += 1;
     }
 
     /// Returns the number of entries.
@@ -194,7 +204,8 @@ impl CasterRecords {
 
     /// Sets the record at `index`, which is at most the number of entries.
     pub fn put(&mut self, index: u32, record: &CasterRecord) {
-        let bounds = record.bounds;
+        let mut member = record.member;
+        let bounds = member.bounds;
         if !self.broken.is_empty() {
             self.broken.remove(&index);
         }
@@ -202,95 +213,58 @@ impl CasterRecords {
         if !is_sound {
             self.broken.insert(index, bounds);
         }
-        let role = |has_it: bool| {
-            if has_it && is_sound {
-                bounds
-            } else {
-                Aabb::EMPTY
-            }
-        };
-        self.write(
-            index,
-            (role(record.casts), role(record.receives)),
-            record.shape,
-            record.facts,
-        );
+        if !is_sound || !(member.casts || member.receives) {
+            member.bounds = Aabb::EMPTY;
+        }
+        self.write(index, member, &record.facts);
     }
 
     /// Makes the entry at `index` one of no caster.
     pub fn clear(&mut self, index: u32) {
         self.broken.remove(&index);
-        let none = (Aabb::EMPTY, Aabb::EMPTY);
-        self.write(index, none, CasterShape::Any, CasterFacts::NOTHING);
+        self.write(index, CasterBox::NOTHING, &CasterFacts::NOTHING);
     }
 
     /// Removes all entries from `count` on.
     pub fn truncate(&mut self, count: usize) {
-        if count < self.casts.len() {
-            self.casts.truncate(count);
-            self.receives.truncate(count);
-            self.shapes.truncate(count);
+        if count < self.len() {
+            self.boxes.truncate(count);
             let gone = self.facts.drain(count..);
             self.always_changing -= gone.filter(|facts| facts.revision.is_none()).count();
             self.broken.split_off(&(count as u32));
-            self.version.changes += 1;
+            self.log.add_unknown();
         }
     }
 
     /// Makes the tree anew from all entries.
     pub fn rebuild_tree(&mut self) {
         if let Some(tree) = &mut self.tree {
-            let all = self.casts.iter().zip(&self.receives);
-            let all: Vec<Aabb> = all
-                .map(|(casts, receives)| either(casts, receives))
-                .collect();
-            tree.rebuild(&all);
+            tree.rebuild(self.boxes.iter().map(|member| member.bounds));
         }
     }
 
-    fn write(
-        &mut self,
-        index: u32,
-        (casts, receives): (Aabb, Aabb),
-        shape: CasterShape,
-        facts: CasterFacts,
-    ) {
+    fn write(&mut self, index: u32, member: CasterBox, facts: &CasterFacts) {
         let at = index as usize;
         self.always_changing += usize::from(facts.revision.is_none());
-        if at == self.casts.len() {
-            self.casts.push(casts);
-            self.receives.push(receives);
-            self.shapes.push(shape);
-            self.facts.push(facts);
-            self.version.changes += 1;
-            self.follow(index, &Aabb::EMPTY, &either(&casts, &receives));
+        let (Some(held), Some(held_facts)) = (self.boxes.get_mut(at), self.facts.get_mut(at))
+        else {
+            self.boxes.push(member);
+            self.facts.push(*facts);
+            self.follow(index, &Aabb::EMPTY, &member.bounds);
             return;
-        }
-        let changes_fit =
-            self.casts[at] != casts || self.receives[at] != receives || self.shapes[at] != shape;
-        if changes_fit {
-            let before = either(&self.casts[at], &self.receives[at]);
-            self.casts[at] = casts;
-            self.receives[at] = receives;
-            self.shapes[at] = shape;
-            self.version.changes += 1;
-            self.follow(index, &before, &either(&casts, &receives));
-        }
-        self.always_changing -= usize::from(self.facts[at].revision.is_none());
-        if self.facts[at] != facts {
-            self.facts[at] = facts;
-            self.version.changes += 1;
+        };
+        self.always_changing -= usize::from(held_facts.revision.is_none());
+        if *held != member || held_facts != facts {
+            let before = std::mem::replace(held, member).bounds;
+            *held_facts = *facts;
+            self.follow(index, &before, &member.bounds);
         }
     }
 
     fn follow(&mut self, index: u32, before: &Aabb, bounds: &Aabb) {
+        self.log.add(index, before, bounds);
         if let Some(tree) = &mut self.tree {
             tree.set(index, before, bounds);
         }
     }
-}
-
-/// Returns the bounds of a caster from those of its two roles, which are equal unless one is empty.
-fn either(casts: &Aabb, receives: &Aabb) -> Aabb {
-    if casts.is_empty() { *receives } else { *casts }
 }

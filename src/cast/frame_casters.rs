@@ -5,7 +5,7 @@ use crate::cast::caster_records::{CasterFacts, CasterRecord, CasterRecords, Cast
 use crate::cast::instances::Instance;
 use crate::cast::mesh_geometry::MeshGeometry;
 use crate::cast::{CasterInstances, Casters, ShadowCaster};
-use crate::fit::{Boxes, CasterShape};
+use crate::fit::{Boxes, ChangedBoxes, Role};
 
 /// Names bounds of a frame that have a NaN or an infinite corner and are not empty. The object that
 /// they bound is left out of the frame: it neither casts nor receives, and all other objects keep
@@ -150,27 +150,29 @@ impl<'a> FrameCasters<'a> {
 
     /// Returns the bounds of those that cast.
     pub fn casting(&self) -> Boxes<'a> {
-        Boxes {
-            bounds: &self.records.casts,
-            tree: self.records.tree.as_ref(),
-        }
+        self.boxes(Role::Casts)
     }
 
     /// Returns the bounds of those that receive.
     pub fn receiving(&self) -> Boxes<'a> {
-        Boxes {
-            bounds: &self.records.receives,
-            tree: self.records.tree.as_ref(),
-        }
+        self.boxes(Role::Receives)
     }
 
-    /// Returns the shapes by index.
-    pub fn shapes(&self) -> &'a [CasterShape] {
-        &self.records.shapes
+    fn boxes(&self, role: Role) -> Boxes<'a> {
+        Boxes {
+            members: &self.records.boxes,
+            role,
+            tree: self.records.tree.as_ref(),
+        }
     }
 
     /// Returns the number of the state that all of this is in.
     pub fn version(&self) -> CastersVersion {
         self.version
+    }
+
+    /// Returns the changes since an earlier state, or `None` where they are not known.
+    pub fn changes_since(&self, version: &CastersVersion) -> Option<ChangedBoxes<'a>> {
+        self.records.changes(version, &self.version)
     }
 }

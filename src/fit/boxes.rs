@@ -2,21 +2,72 @@
 
 use crate::Aabb;
 use crate::fit::bounds_tree::BoundsTree;
+use crate::fit::caster_shape::CasterShape;
+
+/// Is what a box may have to do with shadows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Role {
+    #[default]
+    Casts,
+    Receives,
+}
+
+/// Holds the bounds of a caster with what is known of its surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CasterBox {
+    /// Is empty for one that neither casts nor receives.
+    pub bounds: Aabb,
+    pub casts: bool,
+    pub receives: bool,
+    pub shape: CasterShape,
+}
+
+impl CasterBox {
+    /// Is the box of no caster.
+    pub const NOTHING: Self = Self {
+        bounds: Aabb::EMPTY,
+        casts: false,
+        receives: false,
+        shape: CasterShape::Any,
+    };
+
+    /// Returns the bounds, which are empty for one that has not this role.
+    fn bounds_as(&self, role: Role) -> &Aabb {
+        let has_role = match role {
+            Role::Casts => self.casts,
+            Role::Receives => self.receives,
+        };
+        if has_role { &self.bounds } else { &Aabb::EMPTY }
+    }
+}
 
 /// Holds boxes by index.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Boxes<'a> {
-    /// Holds the boxes; empty ones count for nothing.
-    pub bounds: &'a [Aabb],
+    pub members: &'a [CasterBox],
+    /// Selects the boxes that count; all others count as empty.
+    pub role: Role,
     /// Finds the boxes that are not empty, and may find others; `None` where all of them are to be
     /// looked at.
     pub tree: Option<&'a BoundsTree>,
 }
 
 impl<'a> Boxes<'a> {
-    /// Returns the box at an index.
+    /// Returns the box at an index, which is empty where it does not count.
     pub fn at(&self, index: u32) -> &'a Aabb {
-        &self.bounds[index as usize]
+        self.members[index as usize].bounds_as(self.role)
+    }
+
+    /// Returns what is known of the surface in the box at an index.
+    pub fn shape(&self, index: u32) -> CasterShape {
+        self.members[index as usize].shape
+    }
+
+    /// Returns the boxes that are not empty, with their indices.
+    pub fn iter(self) -> impl Iterator<Item = (u32, &'a Aabb)> {
+        let members = (0u32..).zip(self.members);
+        let boxes = members.map(move |(index, member)| (index, member.bounds_as(self.role)));
+        boxes.filter(|(_, bounds)| !bounds.is_empty())
     }
 
     /// Calls `meet` with each box that is not empty, except where `enters` returns false for a box
@@ -30,27 +81,16 @@ impl<'a> Boxes<'a> {
     ) {
         match self.tree {
             None => {
-                for (index, bounds) in (0u32..).zip(self.bounds) {
-                    if !bounds.is_empty() {
-                        meet(state, index, bounds);
-                    }
+                for (index, bounds) in self.iter() {
+                    meet(state, index, bounds);
                 }
             }
             Some(tree) => tree.walk(state, enters, |state, index| {
-                let bounds = &self.bounds[index as usize];
+                let bounds = self.at(index);
                 if !bounds.is_empty() {
                     meet(state, index, bounds);
                 }
             }),
-        }
-    }
-
-    /// Calls `meet` with each box that is not empty.
-    pub fn for_each(&self, mut meet: impl FnMut(u32, &'a Aabb)) {
-        for (index, bounds) in (0u32..).zip(self.bounds) {
-            if !bounds.is_empty() {
-                meet(index, bounds);
-            }
         }
     }
 }

@@ -9,6 +9,7 @@ use glam::DVec3;
 
 use crate::Aabb;
 use crate::fit::axes::{LightBox, LightSpace};
+use crate::fit::boxes::Boxes;
 use crate::fit::caster_shape::CasterShape;
 use crate::fit::directional_casters::DirectionalCasters;
 use crate::fit::large_casters::{Large, LargestCasters, order_of_bounds};
@@ -41,9 +42,7 @@ pub(crate) struct CasterPart {
 /// Holds what is known of the casters of a frame.
 struct Casters<'a> {
     space: &'a LightSpace,
-    /// Holds the bounds in render space; has one entry per caster.
-    bounds: &'a [Aabb],
-    shapes: &'a [CasterShape],
+    boxes: Boxes<'a>,
 }
 
 /// Holds lists that are reused from frame to frame.
@@ -67,7 +66,6 @@ impl PartScratch {
     /// light-space box that holds all receivers of `seen`.
     pub fn find(
         &mut self,
-        shapes: &[CasterShape],
         candidates: &DirectionalCasters<'_>,
         visible: &LightBox,
         seen: &[SeenReceiver],
@@ -75,8 +73,7 @@ impl PartScratch {
         self.clear();
         let casters = &Casters {
             space: candidates.space,
-            bounds: candidates.boxes.bounds,
-            shapes,
+            boxes: candidates.boxes,
         };
         let limit = MAX_DIVIDED.min(MAX_PAIRS / seen.len().max(1)).max(1);
         let others = LargestCasters::find(candidates, visible, limit, &mut self.large);
@@ -115,8 +112,8 @@ impl PartScratch {
 
 /// Adds the parts of a caster behind which receivers of `seen` lie, one part per octave of height.
 fn divide(casters: &Casters<'_>, caster: u32, seen: &[SeenReceiver], parts: &mut Vec<CasterPart>) {
-    let bounds = &casters.bounds[caster as usize];
-    let shadows_itself = casters.shapes[caster as usize].shadows_itself();
+    let bounds = casters.boxes.at(caster);
+    let shadows_itself = casters.boxes.shape(caster).shadows_itself();
     let first = parts.len();
     // The depths of a caster are rounded at its corners, and in maps that contain it the bias
     // allows for twice that rounding. A caster that rises no more than four times as high above its
@@ -153,7 +150,7 @@ fn divide(casters: &Casters<'_>, caster: u32, seen: &[SeenReceiver], parts: &mut
         }
         let is_cuboid = receiver
             .caster
-            .is_some_and(|of| casters.shapes[of as usize] == CasterShape::Cuboid);
+            .is_some_and(|of| casters.boxes.shape(of) == CasterShape::Cuboid);
         if is_cuboid {
             for axis in 0..3 {
                 if let Some(side) = receiver.lit_side(axis, toward_light) {
@@ -223,7 +220,7 @@ mod tests {
     use super::*;
     use crate::fit::directional_casters::DirectionalCaster;
     use crate::fit::visible::SeenBounds;
-    use crate::fit::{Boxes, LightAxes};
+    use crate::fit::{CasterBox, LightAxes, Role};
     use glam::Vec3;
 
     const DOWNWARD: DVec3 = DVec3::new(0.0, -1.0, 0.0);
@@ -252,15 +249,27 @@ mod tests {
         listed
             .iter()
             .for_each(|caster| visible.union(&caster.light));
+        let members = bounds.iter().zip(shapes);
+        let members = members.map(|(bounds, shape)| CasterBox {
+            bounds: *bounds,
+            casts: true,
+            receives: true,
+            shape: *shape,
+        });
+        let members: Vec<CasterBox> = members.collect();
         let candidates = DirectionalCasters {
             space: &space,
-            boxes: Boxes { bounds, tree: None },
-            visible: &SeenBounds::NOTHING,
+            boxes: Boxes {
+                members: &members,
+                role: Role::Casts,
+                tree: None,
+            },
+            visible: &SeenBounds::of_boxes([&Aabb::new(Vec3::NEG_INFINITY, Vec3::INFINITY)]),
             divided: &[],
             listed: &listed,
         };
         let mut scratch = PartScratch::default();
-        scratch.find(shapes, &candidates, &visible, seen);
+        scratch.find(&candidates, &visible, seen);
         assert!(scratch.divided.contains(&0), "{:?}", scratch.divided);
         scratch.parts
     }

@@ -3,9 +3,12 @@
 
 use crate::fit::axes::{LightAxes, LightBox, LightSpace};
 use crate::fit::boxes::Boxes;
+use crate::fit::camera::CameraFrustum;
 use crate::fit::cascade_bounds::Cascade;
 use crate::fit::caster_parts::PartScratch;
-use crate::fit::directional_casters::{DirectionalCaster, DirectionalCasters};
+use crate::fit::change_log::ChangedBoxes;
+use crate::fit::culling::CulledFor;
+use crate::fit::directional_casters::{DirectionalCaster, DirectionalCasters, light_box_around};
 use crate::fit::directional_input::{FitInput, FitLimits, Region};
 use crate::fit::extruded_rect::ExtrudedRect;
 use crate::fit::footprint::{FootprintScratch, SliceReport};
@@ -13,7 +16,7 @@ use crate::fit::layout::HeldLayout;
 use crate::fit::layout_choice::{Layout, Prediction};
 use crate::fit::layout_samples::{SampleScratch, Sampled};
 use crate::fit::map_rect::{BoundsRequest, HeldBounds, HeldDepth, LightSpaceBounds};
-use crate::fit::required::{camera_slice, checked_spacing, held_depths, required_box};
+use crate::fit::required::{camera_slice, checked_spacing, held_depths, is_fine, required_box};
 use crate::fit::spacing::Spacing;
 use crate::fit::split::MAX_CASCADES;
 use crate::fit::visible::{SeenBounds, SeenLists};
@@ -35,6 +38,8 @@ pub(crate) struct DirectionalFit {
     requests: [Option<BoundsRequest>; MAX_CASCADES],
     /// Bounds what was visible.
     visible: Option<SeenBounds>,
+    /// Holds what the casters of each cascade are culled for.
+    culled_for: [Option<CulledFor>; MAX_CASCADES],
     /// Holds the axes of the light in the last frame.
     axes: Option<LightAxes>,
     /// Holds the depths along the view between which receivers are visible.
@@ -43,6 +48,9 @@ pub(crate) struct DirectionalFit {
     pub slices: [Option<SliceReport>; MAX_CASCADES],
     /// Holds the layout that was found, where none is given.
     layout: Option<HeldLayout>,
+    /// Holds, across the light, all casters that the fit depends on; `None` where it may depend on
+    /// any.
+    influence: Option<LightBox>,
 }
 
 /// Holds lists that are reused from frame to frame.
@@ -93,7 +101,9 @@ impl DirectionalFit {
     ) -> Result<Self, ShadowError> {
         let visible = find_visible(input, &mut scratch.lists);
         scratch.visible = visible;
-        DirectionalCasters::list(&input.space, input.casters, &visible, &mut scratch.casters);
+        let held = self.culled_for.iter().flatten();
+        let shadowed = held.fold(visible, |all, held| all.union(&held.visible));
+        DirectionalCasters::list(&input.space, input.casters, &shadowed, &mut scratch.casters);
         divide_casters(input, scratch);
         let casters = scratch.whole_casters(&input.space, input.casters);
         let any_casts = !scratch.parts.parts.is_empty()
@@ -109,6 +119,11 @@ impl DirectionalFit {
         next.visible = Some(visible);
         let depths = held_depths(&visible, history.held_depths.as_ref());
         next.held_depths = depths.or(history.held_depths);
+        let mut influence = LightBox::EMPTY;
+        if visible.render_min.cmple(visible.render_max).all() {
+            influence.union(&visible_box(&input.space, &visible));
+        }
+        let mut depends_on_all = false;
         let limits = &next.find_layout(input, limits, &visible, scratch);
         if next.layout() != history.layout() {
             next.held = Default::default();
@@ -118,6 +133,10 @@ impl DirectionalFit {
             let slice = camera_slice(input, limits, &visible, depths, cascade);
             let seen = &scratch.lists.seen;
             let required = required_box(input, limits, slice.as_ref(), seen, cascade);
+            if let Some(required) = &required {
+                influence.union(required);
+                depends_on_all |= !is_fine(input, required);
+            }
             let held = next.held[cascade].as_ref();
             let held_bounds = match required {
                 Some(required) if any_casts => {
@@ -139,12 +158,19 @@ impl DirectionalFit {
             next.requests[cascade] = request;
             next.held[cascade] = held_bounds.or(next.held[cascade]);
             let light_bounds = held_bounds.map(|held| held.bounds());
+            let is_held = light_bounds == history.light_bounds[cascade];
+            let culled_for = history.culled_for[cascade].filter(|_| is_held);
+            next.culled_for[cascade] = Some(CulledFor::following(culled_for, &visible));
+            if let Some(light_bounds) = &light_bounds {
+                influence.union(&light_bounds.bounds());
+            }
             next.light_bounds[cascade] = light_bounds;
             next.slices[cascade] = slice.zip(light_bounds).map(|(slice, light_bounds)| {
                 let scratch = &mut scratch.footprint;
                 slice.report(&input.space, &light_bounds.rect, scratch)
             });
         }
+        next.influence = (!depends_on_all).then_some(influence);
         Ok(next)
     }
 
@@ -162,6 +188,9 @@ impl DirectionalFit {
         if !same_depths {
             return None;
         }
+        for held in next.culled_for.iter_mut().flatten() {
+            *held = held.again(self.visible.as_ref()?)?;
+        }
         if let Some(layout) = &self.layout {
             next.layout = Some(layout.without_prediction()?);
         }
@@ -172,6 +201,31 @@ impl DirectionalFit {
             }
         }
         Some(next)
+    }
+
+    /// Returns whether the fit may become another, or may have other casters, where these boxes
+    /// change. `input` is otherwise that of the last fit.
+    pub fn may_change(&self, input: &FitInput<'_>, changes: ChangedBoxes<'_>) -> bool {
+        let (Some(influence), Some(visible)) = (&self.influence, &self.visible) else {
+            return true;
+        };
+        let cameras = match input.region {
+            Region::Cameras(cameras) => cameras,
+            Region::Bounds(_) => &[],
+            Region::Everything => return !changes.is_empty(),
+        };
+        let space = &input.space;
+        let spacing = Spacing::around(space.origin, influence);
+        let toward_light = space.axes.toward_light();
+        let held = self.culled_for.iter().flatten();
+        let visible = held.fold(*visible, |all, held| all.union(&held.visible));
+        changes.iter().any(|changed| {
+            let bounds = &changed.bounds;
+            let is_seen = |camera: &CameraFrustum| !camera.planes.surely_misses(bounds);
+            cameras.iter().any(is_seen)
+                || visible.can_be_shadowed_by(bounds, toward_light)
+                    && light_box_around(space, spacing, bounds).overlaps_xy(influence)
+        })
     }
 
     /// Returns the settings for this frame, with the layout that is found where none is given.
@@ -218,7 +272,7 @@ impl DirectionalFit {
 
     /// Returns the light-space bounds of a cascade that something casts into, and adds its casters
     /// to `drawn`: those of which some part is within the map rectangle, seen along the light, and
-    /// in front of the far plane. `scratch` is the one that the fit has filled.
+    /// in front of the far plane, and that can shadow what is visible or was of late. `scratch` is the one that the fit has filled.
     pub fn cull(
         &self,
         cascade: usize,
@@ -232,7 +286,11 @@ impl DirectionalFit {
         let reaches = |light: &LightBox, bounds: &Aabb| {
             light_bounds.holds_part_of(&spacing.widest(light)) && volume.meets(bounds)
         };
-        scratch.whole_casters(&input.space, input.casters).walk(
+        let casters = DirectionalCasters {
+            visible: &self.culled_for[cascade].as_ref()?.visible,
+            ..scratch.whole_casters(&input.space, input.casters)
+        };
+        casters.walk(
             spacing,
             drawn,
             |_, around| light_bounds.holds_part_of(around),
@@ -266,6 +324,11 @@ fn find_visible(input: &FitInput<'_>, lists: &mut SeenLists) -> SeenBounds {
     }
 }
 
+/// Returns the light-space box around all that is visible.
+fn visible_box(space: &LightSpace, visible: &SeenBounds) -> LightBox {
+    space.bounds(&Aabb::around(visible.render_min, visible.render_max))
+}
+
 /// Replaces casters that are much larger than all others by the parts of them that count. In a
 /// given box everything receives, so that all of a caster counts.
 fn divide_casters(input: &FitInput<'_>, scratch: &mut FitScratch) {
@@ -274,8 +337,7 @@ fn divide_casters(input: &FitInput<'_>, scratch: &mut FitScratch) {
         return;
     }
     let visible = &scratch.visible;
-    let visible_box = Aabb::around(visible.render_min, visible.render_max);
-    let visible_box = input.space.bounds(&visible_box);
+    let visible_box = visible_box(&input.space, visible);
     let candidates = DirectionalCasters {
         space: &input.space,
         boxes: input.casters,
@@ -284,12 +346,7 @@ fn divide_casters(input: &FitInput<'_>, scratch: &mut FitScratch) {
         listed: &scratch.casters,
     };
     let parts = &mut scratch.parts;
-    parts.find(
-        input.shapes,
-        &candidates,
-        &visible_box,
-        &scratch.lists.parts,
-    );
+    parts.find(&candidates, &visible_box, &scratch.lists.parts);
 }
 
 impl FitScratch {

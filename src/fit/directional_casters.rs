@@ -26,8 +26,17 @@ pub(crate) struct DirectionalCasters<'a> {
     pub visible: &'a SeenBounds,
     /// Holds the casters that are divided into parts, in ascending order. They do not count.
     pub divided: &'a [u32],
-    /// Holds the casters where no tree finds them; those that are divided are among them.
+    /// Holds the casters where no tree finds them; those that are divided are among them, and
+    /// others that can shadow nothing visible.
     pub listed: &'a [DirectionalCaster],
+}
+
+/// Returns a box in light space that surely holds that of any box in `around`, grown as
+/// [`Spacing::widest`] does.
+pub(crate) fn light_box_around(space: &LightSpace, spacing: Spacing, around: &Aabb) -> LightBox {
+    let light = space.bounds(around);
+    let reach = light.min.abs().max(light.max.abs()).element_sum();
+    light.grown(spacing.error() + AROUND_STEPS * f64::EPSILON * reach)
 }
 
 impl<'a> DirectionalCasters<'a> {
@@ -41,12 +50,13 @@ impl<'a> DirectionalCasters<'a> {
         listed.clear();
         if boxes.tree.is_none() {
             let toward_light = space.axes.toward_light();
-            boxes.for_each(|index, bounds| {
-                if visible.can_be_shadowed_by(bounds, toward_light) {
-                    let light = space.bounds(bounds);
-                    listed.push(DirectionalCaster { index, light });
-                }
-            });
+            let casters = boxes.iter();
+            let casters =
+                casters.filter(|(_, bounds)| visible.can_be_shadowed_by(bounds, toward_light));
+            listed.extend(casters.map(|(index, bounds)| DirectionalCaster {
+                index,
+                light: space.bounds(bounds),
+            }));
         }
     }
 
@@ -60,37 +70,29 @@ impl<'a> DirectionalCasters<'a> {
         mut enters: impl FnMut(&S, &LightBox) -> bool,
         mut meet: impl FnMut(&mut S, u32, &'a Aabb, &LightBox),
     ) {
+        let toward_light = self.space.axes.toward_light();
+        let counts = |index: u32, bounds: &Aabb| {
+            self.visible.can_be_shadowed_by(bounds, toward_light) && !self.is_divided(index)
+        };
         if self.boxes.tree.is_none() {
             for caster in self.listed {
-                if !self.is_divided(caster.index) {
-                    meet(
-                        state,
-                        caster.index,
-                        self.boxes.at(caster.index),
-                        &caster.light,
-                    );
+                let bounds = self.boxes.at(caster.index);
+                if counts(caster.index, bounds) {
+                    meet(state, caster.index, bounds, &caster.light);
                 }
             }
             return;
         }
-        let toward_light = self.space.axes.toward_light();
-        let error = spacing.error();
         self.boxes.walk(
             state,
             |state, around| {
                 if !self.visible.can_be_shadowed_by(around, toward_light) {
                     return false;
                 }
-                let light = self.space.bounds(around);
-                let reach = light.min.abs().max(light.max.abs()).element_sum();
-                enters(
-                    state,
-                    &light.grown(error + AROUND_STEPS * f64::EPSILON * reach),
-                )
+                enters(state, &light_box_around(self.space, spacing, around))
             },
             |state, index, bounds| {
-                if self.visible.can_be_shadowed_by(bounds, toward_light) && !self.is_divided(index)
-                {
+                if counts(index, bounds) {
                     meet(state, index, bounds, &self.space.bounds(bounds));
                 }
             },

@@ -6,7 +6,6 @@ use crate::Aabb;
 use crate::fit::axes::{LightBox, LightSpace};
 use crate::fit::boxes::Boxes;
 use crate::fit::camera::CameraFrustum;
-use crate::fit::caster_shape::CasterShape;
 use crate::fit::split::{MAX_CASCADES, SplitRule};
 use crate::fit::stability::Stability;
 use crate::fit::texel_rect::TexelRect;
@@ -30,8 +29,6 @@ pub(crate) struct FitInput<'a> {
     pub region: Region<'a>,
     /// Holds the bounds of what casts; empty ones cast nothing.
     pub casters: Boxes<'a>,
-    /// Has one entry per caster.
-    pub shapes: &'a [CasterShape],
     pub receivers: Receivers<'a>,
 }
 

@@ -9,9 +9,10 @@ use glam::{DVec2, DVec3, UVec2};
 
 use crate::Aabb;
 use crate::fit::axes::{LightAxes, LightSpace};
+use crate::fit::change_log::ChangedBoxes;
 use crate::fit::local_input::{LocalInput, MAX_LOCAL_VIEWS};
 use crate::fit::map_rect::{HeldRect, MapRect, MapRectRequest};
-use crate::fit::reached::{self, Reached};
+use crate::fit::reached::{self, FarthestSeen, Reached};
 use crate::fit::region::{HalfSpace, HalfSpaces, Relation};
 use crate::fit::size_step::HeldSize;
 
@@ -40,8 +41,9 @@ pub(crate) struct LocalFit {
 /// Is what a light was last fitted to, so that it can be fitted to it again.
 #[derive(Clone, Debug, Default)]
 struct LocalRequests {
-    /// Is the distance to the farthest receiver that is seen within the range; `None` where there
-    /// is none.
+    /// Is the farthest point of a receiver that is seen.
+    seen: FarthestSeen,
+    /// Is slightly more than its distance; `None` where nothing is seen or it is at the range.
     farthest: Option<f64>,
     /// Is the light's range.
     range: f64,
@@ -65,12 +67,14 @@ impl LocalFit {
         drawn: &mut [Vec<u32>],
     ) -> Self {
         let light = input.position_world - input.origin;
-        let (reach, held_reach, farthest) = self.reach(input, light);
+        let seen = reached::farthest_seen(input, light, &cone(input, light));
+        let (reach, held_reach, farthest) = self.reach(input, light, seen.distance);
         let mut next = Self {
             rects: [None; MAX_LOCAL_VIEWS],
             reach,
             held_reach,
             requests: LocalRequests {
+                seen,
                 farthest,
                 range: input.range,
                 views: [None; MAX_LOCAL_VIEWS],
@@ -153,19 +157,24 @@ impl LocalFit {
         Some(next)
     }
 
+    /// Returns whether the fit may become another, or may have other casters, where these boxes
+    /// change. `input` is otherwise that of the last fit.
+    pub fn may_change(&self, input: &LocalInput<'_>, changes: ChangedBoxes<'_>) -> bool {
+        let light = input.position_world - input.origin;
+        let (cone, last) = (cone(input, light), (&self.requests.seen, self.reach));
+        let mut changes = changes.iter();
+        changes.any(|changed| reached::may_change(changed, last, input, light, &cone))
+    }
+
     /// Returns the distance up to which the light matters: where the farthest receiver that is seen
     /// ends, and at most the light's range. It grows with what is seen at once, and shrinks late.
     /// The second value is its hysteresis, and the third the distance that this was fitted to.
-    fn reach(&self, input: &LocalInput<'_>, light: DVec3) -> (f64, Option<HeldSize>, Option<f64>) {
-        // The six faces of a cube cover all directions together. The one view of a cone does not.
-        let cone = match input.views {
-            [axes] => {
-                let tangent = DVec2::splat(input.receiver_tangent);
-                ViewFrame { axes, light }.region(-tangent, tangent, 0.0)
-            }
-            _ => HalfSpaces::default(),
-        };
-        let farthest = reached::farthest_seen(input, light, &cone);
+    fn reach(
+        &self,
+        input: &LocalInput<'_>,
+        light: DVec3,
+        farthest: f64,
+    ) -> (f64, Option<HeldSize>, Option<f64>) {
         if farthest <= 0.0 || farthest >= input.range {
             return (farthest.min(input.range), self.held_reach, None);
         }
@@ -173,6 +182,18 @@ impl LocalFit {
         let farthest = farthest * (1.0 + 1e-6) + light.abs().max_element() * 1e-6;
         let held = HeldSize::following(self.held_reach, farthest);
         (held.step().min(input.range), Some(held), Some(farthest))
+    }
+}
+
+/// Returns the region within which a light has receivers.
+fn cone(input: &LocalInput<'_>, light: DVec3) -> HalfSpaces {
+    // The six faces of a cube cover all directions together. The one view of a cone does not.
+    match input.views {
+        [axes] => {
+            let tangent = DVec2::splat(input.receiver_tangent);
+            ViewFrame { axes, light }.region(-tangent, tangent, 0.0)
+        }
+        _ => HalfSpaces::default(),
     }
 }
 

@@ -14,6 +14,8 @@
 //! stability.rs    what may change the extent of a cascade
 //! image_corners.rs  the sphere around a slice of a camera's view
 //! bounds_tree/    a tree over boxes; boxes.rs: lists of boxes, with a tree or without
+//! change_log.rs   which boxes have changed lately
+//! culling.rs      for what the casters of a cascade are culled
 //! directional_casters.rs  the casters of a frame as a directional light sees them
 //! visible.rs      what a camera sees of the receivers
 //! extruded_rect.rs  what reaches into the extruded map rectangle
@@ -48,6 +50,8 @@ mod cascade_bounds;
 mod cascade_layout;
 mod caster_parts;
 mod caster_shape;
+mod change_log;
+mod culling;
 mod directional;
 mod directional_casters;
 mod directional_input;
@@ -83,11 +87,12 @@ mod visible;
 pub use axes::LightAxes;
 pub(crate) use axes::{LightBox, LightSpace};
 pub(crate) use bounds_tree::BoundsTree;
-pub(crate) use boxes::Boxes;
+pub(crate) use boxes::{Boxes, CasterBox, Role};
 pub(crate) use camera::CameraFrustum;
 pub use camera::CameraView;
 pub use cascade_layout::CascadeLayout;
 pub use caster_shape::CasterShape;
+pub(crate) use change_log::{ChangeLog, ChangedBoxes};
 pub(crate) use directional::{DirectionalFit, FitScratch};
 pub(crate) use directional_input::{FitInput, FitLimits, Region};
 pub use footprint::SliceReport;

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::Aabb;
+use crate::fit::change_log::ChangedBox;
 use crate::fit::local_input::LocalInput;
 use crate::fit::nearest::nearest_for;
 use crate::fit::region::{HalfSpaces, Relation};
@@ -30,17 +31,40 @@ pub(crate) struct ReachedCaster {
     pub farthest_corner: f64,
 }
 
+/// Is the sphere around a light within which casters and receivers matter to it.
+struct Reach {
+    light: DVec3,
+    radius: f64,
+    /// Is the box around it.
+    around: Aabb,
+}
+
+impl Reach {
+    fn new(light: DVec3, reach: f64) -> Self {
+        // The distance is rounded outward, since boxes are rounded to f32.
+        let radius = reach * (1.0 + 1e-6) + light.abs().max_element() * 1e-6;
+        Self {
+            light,
+            radius,
+            around: Aabb::new((light - radius).as_vec3(), (light + radius).as_vec3()),
+        }
+    }
+
+    /// Returns the part of a box within the box around the sphere, or `None` where the sphere does
+    /// not meet it. A box has a part wherever any box in it has one, whatever the rounding.
+    fn part(&self, bounds: &Aabb) -> Option<Aabb> {
+        let part = intersection(bounds, &self.around);
+        let meets =
+            !part.is_empty() && distance_squared(&part, self.light) <= self.radius * self.radius;
+        meets.then_some(part)
+    }
+}
+
 impl Reached {
     /// Fills the lists from `input`, for a light at `light` in render space.
     pub fn find(&mut self, input: &LocalInput<'_>, light: DVec3, reach: f64) {
-        // The distance is rounded outward, since boxes are rounded to f32.
-        let outward = reach * (1.0 + 1e-6) + light.abs().max_element() * 1e-6;
-        let around = Aabb::new((light - outward).as_vec3(), (light + outward).as_vec3());
-        let near = |bounds: &Aabb| {
-            let part = intersection(bounds, &around);
-            (!part.is_empty() && distance_squared(&part, light) <= outward * outward)
-                .then_some(part)
-        };
+        let within = Reach::new(light, reach);
+        let near = |bounds: &Aabb| within.part(bounds);
         self.casters.clear();
         self.receivers.clear();
         let receivers = &mut self.receivers;
@@ -99,36 +123,90 @@ impl Reached {
     }
 }
 
-/// Returns the distance from the light of the farthest point of a receiver that is seen and within
-/// `cone`, or the light's range where one is farther than that; 0 where nothing is seen.
-pub(crate) fn farthest_seen(input: &LocalInput<'_>, light: DVec3, cone: &HalfSpaces) -> f64 {
-    let mut farthest: f64 = 0.0;
+/// Is the farthest point, from a light, of what is seen.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct FarthestSeen {
+    /// Is its distance, and at most the light's range; 0 where nothing is seen.
+    pub distance: f64,
+    /// Is the index of the caster that it is a point of, if it is one's.
+    pub caster: Option<u32>,
+}
+
+/// Returns the farthest point of a receiver that is seen and within `cone`, or any that is as far
+/// as the light's range.
+pub(crate) fn farthest_seen(
+    input: &LocalInput<'_>,
+    light: DVec3,
+    cone: &HalfSpaces,
+) -> FarthestSeen {
+    let mut farthest = FarthestSeen::default();
     for seen in input.seen {
         let mut region = *seen;
         cone.as_slice().iter().for_each(|plane| region.push(*plane));
         input.receivers.walk(
             &mut farthest,
             |farthest, around| {
-                *farthest < input.range
-                    && farthest_corner(around, light).length() > *farthest
+                farthest.distance < input.range
+                    && farthest_corner(around, light).length() > farthest.distance
                     && !region.surely_misses(around)
             },
-            |farthest, _, bounds| {
+            |farthest, caster, bounds| {
                 let corner = farthest_corner(bounds, light).length();
-                if corner <= *farthest || *farthest >= input.range {
+                if corner <= farthest.distance || farthest.distance >= input.range {
                     return;
                 }
+                let mut distance = farthest.distance;
                 if region.relation(bounds) == Relation::Inside {
-                    *farthest = corner;
+                    distance = corner;
                 } else {
                     region.visit_vertices(bounds, |vertex| {
-                        *farthest = farthest.max(vertex.distance(light));
+                        distance = distance.max(vertex.distance(light));
                     });
+                }
+                if distance > farthest.distance {
+                    *farthest = FarthestSeen { distance, caster };
                 }
             },
         );
     }
-    farthest.min(input.range)
+    farthest.distance = farthest.distance.min(input.range);
+    farthest
+}
+
+/// Returns whether a receiver within `bounds` may be seen, within `cone`, farther from the light
+/// than `distance`.
+fn may_be_seen_beyond(
+    distance: f64,
+    bounds: &Aabb,
+    input: &LocalInput<'_>,
+    light: DVec3,
+    cone: &HalfSpaces,
+) -> bool {
+    let region = |seen: &HalfSpaces| {
+        let mut region = *seen;
+        cone.as_slice().iter().for_each(|plane| region.push(*plane));
+        region
+    };
+    distance < input.range
+        && farthest_corner(bounds, light).length() > distance
+        && input
+            .seen
+            .iter()
+            .any(|seen| !region(seen).surely_misses(bounds))
+}
+
+/// Returns whether a fit to `farthest`, with the reach that followed from it, may become another
+/// where casters and receivers change within `changed`.
+pub(crate) fn may_change(
+    changed: &ChangedBox,
+    (farthest, reach): (&FarthestSeen, f64),
+    input: &LocalInput<'_>,
+    light: DVec3,
+    cone: &HalfSpaces,
+) -> bool {
+    Reach::new(light, reach).part(&changed.bounds).is_some()
+        || farthest.caster == Some(changed.index)
+        || may_be_seen_beyond(farthest.distance, &changed.bounds, input, light, cone)
 }
 
 /// Returns the distances of the farthest corner of a box from a point along each axis.

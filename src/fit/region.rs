@@ -87,6 +87,39 @@ impl Segment {
     }
 }
 
+/// Is a box as it is compared with half-spaces.
+struct Extent {
+    center: DVec3,
+    half: DVec3,
+    rounding: f64,
+}
+
+impl Extent {
+    fn new(bounds: &Aabb) -> Self {
+        let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+        Self {
+            center: (min + max) * 0.5,
+            half: (max - min) * 0.5,
+            // Each of the distances is a sum of four products, which are rounded by an ulp or two.
+            rounding: 32.0 * f64::EPSILON * min.abs().max(max.abs()).element_sum(),
+        }
+    }
+
+    fn distance(&self, plane: &HalfSpace) -> f64 {
+        plane.distance(self.center)
+    }
+
+    /// Returns how far the box extends from its middle across the plane.
+    fn reach(&self, plane: &HalfSpace) -> f64 {
+        plane.normal.abs().dot(self.half)
+    }
+
+    /// Returns more than distances may be off.
+    fn slack(&self, plane: &HalfSpace) -> f64 {
+        self.rounding + 32.0 * f64::EPSILON * plane.offset.abs()
+    }
+}
+
 impl HalfSpaces {
     /// Returns the inside of a box.
     pub fn of_box(bounds: &Aabb) -> Self {
@@ -136,14 +169,22 @@ impl HalfSpaces {
     /// Returns whether the region surely has nothing of `around`, nor of any box in it as
     /// [`relation`](Self::relation) judges that one, whatever the rounding.
     pub fn surely_misses(&self, around: &Aabb) -> bool {
-        let (min, max) = (around.min.as_dvec3(), around.max.as_dvec3());
-        let (center, half) = ((min + max) * 0.5, (max - min) * 0.5);
-        // Each of the distances is a sum of four products, which are rounded by an ulp or two.
-        let reach = 32.0 * f64::EPSILON * min.abs().max(max.abs()).element_sum();
-        self.as_slice().iter().any(|plane| {
-            let slack = reach + 32.0 * f64::EPSILON * plane.offset.abs();
-            plane.distance(center) < -plane.normal.abs().dot(half) - slack
-        })
+        let extent = Extent::new(around);
+        let mut planes = self.as_slice().iter();
+        planes.any(|plane| extent.distance(plane) < -extent.reach(plane) - extent.slack(plane))
+    }
+
+    /// Returns those of the half-spaces that may not hold all of `bounds`. The others cut nothing
+    /// off the box, and none of their edges is in it.
+    fn cutting(&self, bounds: &Aabb) -> Self {
+        let extent = Extent::new(bounds);
+        let mut cutting = Self::default();
+        for plane in self.as_slice() {
+            if extent.distance(plane) <= extent.reach(plane) + extent.slack(plane) {
+                cutting.push(*plane);
+            }
+        }
+        cutting
     }
 
     /// Calls `visit` with points whose convex hull is the region's intersection with `bounds`
@@ -155,7 +196,7 @@ impl HalfSpaces {
         match self.relation(bounds) {
             Relation::Outside => {}
             Relation::Inside => (0..8).for_each(|c| visit(bounds.corner(c).as_dvec3())),
-            Relation::Across => self.visit_cut(bounds, visit),
+            Relation::Across => self.cutting(bounds).visit_cut(bounds, visit),
         }
     }
 

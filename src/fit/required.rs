@@ -36,17 +36,20 @@ pub(crate) fn checked_spacing(
     spacing.checked(extent, limits.map_size, floor, distance)
 }
 
+/// Returns whether f64 is fine enough for [`checked_spacing`] wherever other casters and receivers
+/// are.
+pub(crate) fn is_fine(input: &FitInput<'_>, required: &LightBox) -> bool {
+    let spacing = Spacing::around(input.space.origin, required);
+    spacing.finest_texel() <= input.texel_floor(required, required.max.z)
+}
+
 /// Returns the wider side, seen from the light, of all casters and receivers of the frame together.
 fn widest_given(input: &FitInput<'_>) -> f64 {
     let receivers = input.receivers;
-    let lists = [
-        input.casters.bounds,
-        receivers.given,
-        receivers.casters.bounds,
-    ];
-    let given = lists.into_iter().flatten();
-    let given = given
-        .filter(|bounds| !bounds.is_empty())
+    let casters = input.casters.iter().map(|(_, bounds)| bounds);
+    let receivers = receivers.iter().map(|(bounds, _)| bounds);
+    let given = casters
+        .chain(receivers)
         .fold(Aabb::EMPTY, |all, bounds| all.union(*bounds));
     // Where the origin is does not matter for a side, and a distant one would cost its precision.
     let space = LightSpace {

@@ -80,7 +80,7 @@ impl Seen {
 }
 
 /// Holds the bounds of all that is seen, in render space and in depth along the view.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SeenBounds {
     pub render_min: DVec3,
     pub render_max: DVec3,
@@ -125,6 +125,16 @@ impl SeenBounds {
         })
     }
 
+    /// Returns the bounds of what is in either of two.
+    pub fn union(&self, other: &Self) -> Self {
+        Self {
+            render_min: self.render_min.min(other.render_min),
+            render_max: self.render_max.max(other.render_max),
+            depth_near: self.depth_near.min(other.depth_near),
+            depth_far: self.depth_far.max(other.depth_far),
+        }
+    }
+
     fn include(&mut self, seen: &Seen, render_min: DVec3, render_max: DVec3) {
         self.render_min = self.render_min.min(render_min);
         self.render_max = self.render_max.max(render_max);
@@ -161,10 +171,10 @@ impl<'a> Receivers<'a> {
 
     /// Returns the bounds that are not empty, with the casters whose surfaces they are.
     pub fn iter(&self) -> impl Iterator<Item = (&'a Aabb, Option<u32>)> + use<'a> {
-        let given = self.given.iter().map(|bounds| (bounds, None));
-        let casters = (0u32..).zip(self.casters.bounds);
-        let all = given.chain(casters.map(|(index, bounds)| (bounds, Some(index))));
-        all.filter(|(bounds, _)| !bounds.is_empty())
+        let given = self.given.iter().filter(|bounds| !bounds.is_empty());
+        let casters = self.casters.iter();
+        let casters = casters.map(|(index, bounds)| (bounds, Some(index)));
+        given.map(|bounds| (bounds, None)).chain(casters)
     }
 }
 

@@ -239,16 +239,8 @@ impl DirectionalShadow {
         frame: &ShadowFrame<'_>,
         light: &DirectionalLight,
     ) -> Result<&ShadowReport, ShadowError> {
-        let now = (frame.version, *light);
-        if self.last == Some(now) && self.maps.unchanged_report().is_some() {
-            if let Some(fit) = self.fit.again() {
-                self.fit = fit;
-                return Ok(self.maps.report());
-            }
-        }
-        self.last = None;
+        let last = self.last.take();
         let axes = light.axes()?;
-        self.check_distances(frame)?;
         let input = FitInput {
             space: LightSpace {
                 axes,
@@ -256,9 +248,14 @@ impl DirectionalShadow {
             },
             region: frame.region,
             casters: frame.casters.casting(),
-            shapes: frame.casters.shapes(),
             receivers: frame.receivers,
         };
+        if let Some(fit) = self.fit_as_before(last, frame, light, &input) {
+            self.fit = fit;
+            self.last = Some((frame.version, *light));
+            return Ok(self.maps.keep(&frame.casters));
+        }
+        self.check_distances(frame)?;
         let fit = self.fit.fit(&input, &self.limits, &mut self.scratch)?;
         let views = self.drawn_views(&fit, &input, &frame.casters)?;
         let limit = distance_limit(frame.region, self.maps.sampling().fade);
@@ -280,8 +277,23 @@ impl DirectionalShadow {
         }
         let report = self.maps.record(encoder, maps_frame)?;
         self.fit = fit;
-        self.last = Some(now);
+        self.last = Some((frame.version, *light));
         Ok(report)
+    }
+
+    /// Returns the fit for a frame that leaves all views as they are: nothing that they depend on
+    /// has changed since the last frame. Returns `None` for any other frame.
+    fn fit_as_before(
+        &self,
+        last: Option<(FrameVersion, DirectionalLight)>,
+        frame: &ShadowFrame<'_>,
+        light: &DirectionalLight,
+        input: &FitInput<'_>,
+    ) -> Option<DirectionalFit> {
+        let (version, _) = last.filter(|(_, last)| last == light && self.maps.is_unchanged())?;
+        let changes = frame.changes_since(&version)?;
+        let may_change = self.fit.may_change(input, changes);
+        (!may_change).then(|| self.fit.again()).flatten()
     }
 
     /// Checks that the slices of all cameras end at a finite depth where the fit covers the whole

@@ -172,7 +172,8 @@ impl LocalLights {
         max_views: Option<u32>,
     ) -> Result<&ShadowReport, ShadowError> {
         if self.is_as_before(frame, lights) {
-            return Ok(self.maps.report());
+            self.last_frame = Some(frame.version);
+            return Ok(self.maps.keep(&frame.casters));
         }
         self.last_frame = None;
         let mut candidates = std::mem::take(&mut self.candidates);
@@ -274,13 +275,14 @@ impl LocalLights {
         Ok(self.maps.report())
     }
 
-    /// Returns whether a frame is the last one again and leaves all views as they are. The time
-    /// that has passed is then counted.
+    /// Returns whether a frame leaves all views as they are: nothing that they depend on has
+    /// changed since the last frame. The time that has passed is then counted.
     fn is_as_before(&mut self, frame: &ShadowFrame<'_>, lights: &[LocalPlacement]) -> bool {
-        if self.last_frame != Some(frame.version)
-            || self.maps.unchanged_report().is_none()
-            || self.last_lights != lights
-        {
+        let last_frame = self.last_frame.as_ref();
+        let Some(changes) = last_frame.and_then(|last| frame.changes_since(last)) else {
+            return false;
+        };
+        if !self.maps.is_unchanged() || self.last_lights != lights {
             return false;
         }
         let due = |layer: &mut PoolLayer| layer.count_frame() && !layer.is_settled();
@@ -289,7 +291,10 @@ impl LocalLights {
         }
         self.fits.clear();
         for light in lights {
-            let Some(fit) = self.slots[light.slot as usize].fit.again() else {
+            let fit = &self.slots[light.slot as usize].fit;
+            let layer = self.pool_layer.as_ref();
+            let may_change = fit.may_change(&self.input(frame, light, layer), changes);
+            let Some(fit) = (!may_change).then(|| fit.again()).flatten() else {
                 return false;
             };
             self.fits.push(fit);
@@ -345,7 +350,7 @@ impl LocalLights {
         let input = self.input(frame, light, layer);
         let sizes_texels = input.sizes_texels;
         let maps = &mut self.maps;
-        let axes = &light.axes[..light.view_count as usize];
+        let axes = input.views;
         let mut drawn: [Vec<u32>; MAX_LOCAL_VIEWS] = std::array::from_fn(|_| maps.spare_list());
         let held = &self.slots[light.slot as usize].fit;
         let fit = held.fit(&input, &mut self.reached, &mut drawn);

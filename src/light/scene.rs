@@ -9,7 +9,7 @@ use crate::cast::{
     BrokenBounds, CasterRecords, Casters, CastersVersion, FrameCasters, sound_bounds,
 };
 use crate::check;
-use crate::fit::{CameraFrustum, HalfSpaces, Receivers, Region};
+use crate::fit::{CameraFrustum, ChangedBoxes, HalfSpaces, Receivers, Region};
 use crate::{Aabb, CameraView, ShadowError};
 
 /// Selects the receivers for which the shadows of a frame are rendered. Maps cover no other
@@ -225,13 +225,21 @@ pub struct ShadowFrame<'a> {
     pub(crate) receivers: Receivers<'a>,
 }
 
-impl ShadowFrame<'_> {
+impl<'a> ShadowFrame<'a> {
     /// Returns the bounds of casters and receivers that have a NaN or an infinite corner and are
     /// not empty. Their objects are left out of the frame, and all others keep their shadows. Each
     /// light's report lists the same bounds
     /// ([`ShadowReport::broken_bounds`](crate::report::ShadowReport::broken_bounds)).
     pub fn broken_bounds(&self) -> &[BrokenBounds] {
         self.casters.broken
+    }
+
+    /// Returns the casters and receivers that have changed since an earlier frame, or `None` where
+    /// anything else may have changed as well.
+    pub(crate) fn changes_since(&self, version: &FrameVersion) -> Option<ChangedBoxes<'a>> {
+        let same_surroundings = version.surroundings == self.version.surroundings;
+        let changes = || self.casters.changes_since(&version.casters);
+        same_surroundings.then(changes).flatten()
     }
 
     /// Returns the position of the first camera in render space, or `None` where the frame has no

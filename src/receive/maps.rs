@@ -300,9 +300,15 @@ impl ShadowMaps {
         Ok(&self.report)
     }
 
-    /// Returns the report of the last frame if an equal frame leaves all views as they are.
-    pub(crate) fn unchanged_report(&self) -> Option<&ShadowReport> {
-        self.is_unchanged.then_some(&self.report)
+    /// Returns whether a frame that is equal to the last leaves all views as they are.
+    pub(crate) fn is_unchanged(&self) -> bool {
+        self.is_unchanged
+    }
+
+    /// Returns the report of a frame that leaves all views as they are.
+    pub(crate) fn keep(&mut self, casters: &FrameCasters<'_>) -> &ShadowReport {
+        self.report.note_frame(casters);
+        &self.report
     }
 
     /// Returns the uniforms of the frame, one per view.
@@ -343,7 +349,6 @@ impl ShadowMaps {
     }
 
     fn fill_report(&mut self, layers: &[LayerState], casters: &FrameCasters<'_>) {
-        let caster_count = casters.len() as u32;
         let layer_of = layer_of(self.shares_layer);
         let lights = lights(&self.views, self.views_per_light);
         let sampled = lights.flat_map(|light| {
@@ -357,9 +362,9 @@ impl ShadowMaps {
             match views.next_if(|(draws, _)| draws.view.index() == base.index) {
                 None if base.deferred => ViewReport {
                     status: ViewStatus::Deferred,
-                    ..ViewReport::empty(layer_of(base.index), caster_count)
+                    ..ViewReport::empty(layer_of(base.index))
                 },
-                None => ViewReport::empty(layer_of(base.index), caster_count),
+                None => ViewReport::empty(layer_of(base.index)),
                 Some((draws, sampled)) => ViewReport {
                     slice: base.slice,
                     max_peter_panning_world: self.sampling.max_peter_panning_world(&sampled),
@@ -368,10 +373,9 @@ impl ShadowMaps {
             }
         });
         self.report.bytes_held = self.map.bytes() + self.recorder.bytes();
-        self.report.broken_bounds.clear();
-        self.report.broken_bounds.extend_from_slice(casters.broken);
         self.report.views.clear();
         self.report.views.extend(reports);
+        self.report.note_frame(casters);
     }
 
     /// Returns how many depth passes `draws` needs.

@@ -69,7 +69,7 @@ pub struct ViewReport {
 }
 
 impl ViewReport {
-    /// Describes a view with a map, apart from its slice and its peter-panning.
+    /// Describes a view with a map, apart from its slice, its peter-panning and what it culled.
     pub(crate) fn of(draws: &ViewDraws, casters: &FrameCasters<'_>) -> Self {
         let triangles: u64 = draws
             .casters
@@ -90,7 +90,7 @@ impl ViewReport {
             casters: draws.casters.len() as u32,
             copied: draws.copied,
             draws: draws.draw_calls(),
-            culled: (casters.len() - draws.casters.len()) as u32,
+            culled: 0,
             texel_size_world: draws.view.texel_size_world(),
             depth_range_world: draws.view.depth_range_world(),
             max_peter_panning_world: 0.0,
@@ -98,8 +98,8 @@ impl ViewReport {
         }
     }
 
-    /// Returns the report of a view into which nothing casts.
-    pub(crate) fn empty(layer: u32, culled: u32) -> Self {
+    /// Returns the report of a view into which nothing casts, apart from what it culled.
+    pub(crate) fn empty(layer: u32) -> Self {
         Self {
             layer,
             texels: TexelRect::default(),
@@ -108,7 +108,7 @@ impl ViewReport {
             copied: 0,
             draws: 0,
             triangles: 0,
-            culled,
+            culled: 0,
             texel_size_world: Vec2::ZERO,
             depth_range_world: 0.0,
             max_peter_panning_world: 0.0,
@@ -172,6 +172,15 @@ impl ShadowReport {
             .fold(0, u64::saturating_add)
     }
 
+    /// Takes note of what a frame consists of, whether or not it is drawn.
+    pub(crate) fn note_frame(&mut self, casters: &FrameCasters<'_>) {
+        for view in &mut self.views {
+            view.culled = (casters.len() as u32).saturating_sub(view.casters);
+        }
+        self.broken_bounds.clear();
+        self.broken_bounds.extend_from_slice(casters.broken);
+    }
+
     fn drawn(&self) -> impl Iterator<Item = &ViewReport> {
         self.views
             .iter()
@@ -190,7 +199,7 @@ mod tests {
             draws,
             triangles: u64::MAX,
             texels: TexelRect::whole(u32::MAX),
-            ..ViewReport::empty(0, 0)
+            ..ViewReport::empty(0)
         };
         let report = ShadowReport {
             views: vec![view(0), view(u32::MAX), view(7)],

@@ -9,17 +9,22 @@
 //! volumes that stay the same during a walk. A light's walks narrow while they go: the nearest
 //! caster is found by looking into no box that is farther than the nearest so far.
 //!
+//! Where few boxes leave their fat boxes between two walks, the boxes above each of them grow at
+//! once. Where many do, all boxes above are made anew from below by the next walk.
+//!
 //! ```text
+//! nodes.rs        the nodes, how they are walked and refitted
 //! restructure.rs  how leaves are added and removed
 //! ```
 
+mod nodes;
 mod restructure;
 
-use crate::Aabb;
-use restructure::{half_area, holds, join};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, OnceLock, PoisonError};
 
-/// Marks a link that leads nowhere.
-const NONE: u32 = u32::MAX;
+use crate::Aabb;
+use nodes::{NONE, Node, Nodes, half_area, holds, join};
 
 /// Is the number of frames for which the fat box around a moving box holds it, if its velocity
 /// stays the same. So the tree is touched in one frame of eight for each box that moves steadily.
@@ -30,87 +35,84 @@ const FRAMES_AHEAD: f32 = 8.0;
 /// leaf once in 40 frames.
 const REFITS_PER_INSERTION: u8 = 4;
 
+/// Is the share of the leaves that may be inserted anew between two walks, as the number by which
+/// their count is divided, and a number that may be in any case. Where all boxes move, an
+/// insertion costs as much as some twenty updates, and without a limit all of them would come in
+/// the same frame.
+const LEAVES_PER_INSERTION: usize = 256;
+const FEWEST_INSERTIONS: usize = 16;
+
+/// Is the share of the leaves that may have the boxes above them grow between two walks, before
+/// all boxes are left to be made anew, and a number that may in any case. Each grows boxes at
+/// several places in memory; making them anew goes through the memory in order.
+const LEAVES_PER_WIDENING: usize = 64;
+const FEWEST_WIDENINGS: usize = 64;
+
 /// Is the factor by which the half-area of a fat box may exceed what its box needs before it is
 /// made smaller. A box that has come to rest after a fast motion then costs walks no more than
 /// sixteen boxes of its own size.
 const LARGEST_FAT_RATIO: f32 = 16.0;
 
 /// Finds boxes, which are known by the indices that their owner gives them.
-#[derive(Clone, Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct BoundsTree {
-    nodes: Vec<Node>,
-    /// Holds the parent of each node, `NONE` for the root and for nodes that are not in use.
-    parents: Vec<u32>,
-    /// Holds the nodes that are not in use.
-    spare: Vec<u32>,
-    /// Holds for each index the node that holds it, `NONE` where no box has the index.
-    leaves: Vec<u32>,
-    /// Counts for each index how often its fat box was replaced since its leaf was inserted.
-    refits: Vec<u8>,
-    root: u32,
+    /// Has an entry for each index.
+    leaves: Vec<Leaf>,
+    /// Holds the nodes, if each of their boxes holds those below it.
+    ready: OnceLock<Nodes>,
+    /// Holds the nodes otherwise, until the next walk. Their links are right.
+    stale: Mutex<Nodes>,
+    /// States that the tree was walked since the next two were set to 0.
+    was_walked: AtomicBool,
+    widenings: usize,
+    insertions: usize,
 }
 
+/// Is what is known of the box of an index.
 #[derive(Clone, Copy, Debug)]
-struct Node {
-    bounds: Aabb,
-    /// Holds the two children, or the index of a box and `NONE`.
-    links: [u32; 2],
+struct Leaf {
+    /// Is the fat box.
+    fat: Aabb,
+    /// Is the node, `NONE` where no box has the index.
+    node: u32,
+    /// Counts how often the fat box was replaced since the leaf was inserted.
+    refits: u8,
 }
 
-impl Node {
-    fn leaf(index: u32, bounds: Aabb) -> Self {
-        Self {
-            bounds,
-            links: [index, NONE],
-        }
-    }
-
-    fn is_leaf(&self) -> bool {
-        self.links[1] == NONE
-    }
-}
-
-impl Default for BoundsTree {
-    fn default() -> Self {
-        Self {
-            nodes: Vec::new(),
-            parents: Vec::new(),
-            spare: Vec::new(),
-            leaves: Vec::new(),
-            refits: Vec::new(),
-            root: NONE,
-        }
-    }
+impl Leaf {
+    const NOTHING: Self = Self {
+        fat: Aabb::EMPTY,
+        node: NONE,
+        refits: 0,
+    };
 }
 
 impl BoundsTree {
     /// Replaces all boxes by those of a list, whose places are their indices. Empty ones are left
     /// out. The tree is as good as one that is made at once can be: each box of it divides its
     /// members at the median of their middles.
-    pub fn rebuild(&mut self, bounds: &[Aabb]) {
-        self.nodes.clear();
-        self.parents.clear();
-        self.spare.clear();
+    pub fn rebuild(&mut self, bounds: impl Iterator<Item = Aabb>) {
         self.leaves.clear();
-        self.leaves.resize(bounds.len(), NONE);
-        self.refits.clear();
-        self.refits.resize(bounds.len(), 0);
-        let indices = (0u32..)
-            .zip(bounds)
-            .filter(|(_, bounds)| !bounds.is_empty());
-        let mut members: Vec<(u32, Aabb)> = indices.map(|(index, b)| (index, *b)).collect();
-        self.root = if members.is_empty() {
-            NONE
-        } else {
-            self.build(&mut members)
-        };
+        self.leaves.extend(bounds.map(|fat| Leaf {
+            fat,
+            ..Leaf::NOTHING
+        }));
+        let all = (0u32..).zip(&self.leaves);
+        let members = all.filter(|(_, leaf)| !leaf.fat.is_empty());
+        let mut members: Vec<(u32, Aabb)> = members.map(|(index, l)| (index, l.fat)).collect();
+        let mut nodes = std::mem::take(self.nodes_mut());
+        nodes.clear();
+        if !members.is_empty() {
+            nodes.root = self.build(&mut nodes, &mut members);
+        }
+        self.ready = OnceLock::from(nodes);
     }
 
     /// Adds the nodes over `members`, which are not empty, and returns the highest.
-    fn build(&mut self, members: &mut [(u32, Aabb)]) -> u32 {
+    fn build(&mut self, nodes: &mut Nodes, members: &mut [(u32, Aabb)]) -> u32 {
         if let [(index, bounds)] = *members {
-            let node = self.add(Node::leaf(index, bounds));
-            self.leaves[index as usize] = node;
+            let node = nodes.add(Node::leaf(index, bounds));
+            self.leaves[index as usize].node = node;
             return node;
         }
         let middle = |bounds: &Aabb| bounds.min + bounds.max;
@@ -124,14 +126,14 @@ impl BoundsTree {
             middle(&a.1)[axis].total_cmp(&middle(&b.1)[axis])
         });
         let (low, high) = members.split_at_mut(half);
-        let node = self.add(Node {
+        let node = nodes.add(Node {
             bounds,
             links: [NONE; 2],
         });
-        let links = [self.build(low), self.build(high)];
-        self.nodes[node as usize].links = links;
+        let links = [self.build(nodes, low), self.build(nodes, high)];
+        nodes.nodes[node as usize].links = links;
         for child in links {
-            self.parents[child as usize] = node;
+            nodes.parents[child as usize] = node;
         }
         node
     }
@@ -140,37 +142,89 @@ impl BoundsTree {
     pub fn set(&mut self, index: u32, before: &Aabb, bounds: &Aabb) {
         let place = index as usize;
         if place >= self.leaves.len() {
-            self.leaves.resize(place + 1, NONE);
-            self.refits.resize(place + 1, 0);
+            self.leaves.resize(place + 1, Leaf::NOTHING);
         }
         let leaf = self.leaves[place];
-        if leaf == NONE {
+        if leaf.node == NONE {
             if !bounds.is_empty() {
-                self.refits[place] = 0;
                 self.insert(index, *bounds);
             }
             return;
         }
         if bounds.is_empty() {
-            self.remove(leaf);
-            self.leaves[place] = NONE;
+            self.nodes_mut().remove(leaf.node);
+            self.leaves[place] = Leaf::NOTHING;
             return;
         }
-        let fat = self.nodes[leaf as usize].bounds;
-        let escapes = !holds(&fat, bounds);
+        let escapes = !holds(&leaf.fat, bounds);
+        // A fat box is no smaller than its box, which settles the matter for most.
+        let may_be_fat =
+            |needed: &Aabb| half_area(&leaf.fat) <= LARGEST_FAT_RATIO * half_area(needed);
+        if !escapes && may_be_fat(bounds) {
+            return;
+        }
         let ahead = fat_box(before, bounds);
-        if !escapes && half_area(&fat) <= LARGEST_FAT_RATIO * half_area(&ahead) {
+        if escapes || !may_be_fat(&ahead) {
+            self.replace_fat_box(index, ahead, escapes);
+        }
+    }
+
+    /// Sets the fat box of an index that has a leaf. Unless the box `escapes` from the one before,
+    /// its leaf is inserted anew if possible, since the boxes above it may be too large as well.
+    fn replace_fat_box(&mut self, index: u32, ahead: Aabb, escapes: bool) {
+        if *self.was_walked.get_mut() {
+            *self.was_walked.get_mut() = false;
+            (self.widenings, self.insertions) = (0, 0);
+        }
+        let count = self.leaves.len();
+        let Leaf { node, refits, .. } = self.leaves[index as usize];
+        let is_due = !escapes || refits >= REFITS_PER_INSERTION;
+        if is_due && self.insertions < FEWEST_INSERTIONS + count / LEAVES_PER_INSERTION {
+            self.insertions += 1;
+            self.nodes_mut().remove(node);
+            self.insert(index, ahead);
             return;
         }
-        if escapes && self.refits[place] < REFITS_PER_INSERTION {
-            self.refits[place] += 1;
-            self.nodes[leaf as usize].bounds = ahead;
-            self.widen_above(leaf, &ahead);
-        } else {
-            self.refits[place] = 0;
-            self.remove(leaf);
-            self.insert(index, ahead);
+        self.leaves[index as usize] = Leaf {
+            fat: ahead,
+            node,
+            refits: refits.saturating_add(1),
+        };
+        self.widenings += 1;
+        if let Some(nodes) = self.ready.get_mut() {
+            if self.widenings <= FEWEST_WIDENINGS + count / LEAVES_PER_WIDENING {
+                nodes.widen(node, &ahead);
+            } else if let Some(nodes) = self.ready.take() {
+                self.stale = Mutex::new(nodes);
+            }
         }
+    }
+
+    fn insert(&mut self, index: u32, fat: Aabb) {
+        let node = self.nodes_mut().insert(index, fat);
+        self.leaves[index as usize] = Leaf {
+            fat,
+            node,
+            refits: 0,
+        };
+    }
+
+    /// Returns the nodes, whose boxes need not hold those below them.
+    fn nodes_mut(&mut self) -> &mut Nodes {
+        match self.ready.get_mut() {
+            Some(nodes) => nodes,
+            None => self.stale.get_mut().unwrap_or_else(PoisonError::into_inner),
+        }
+    }
+
+    /// Returns the nodes, whose boxes hold those below them.
+    fn nodes(&self) -> &Nodes {
+        self.ready.get_or_init(|| {
+            let mut stale = self.stale.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut nodes = std::mem::take(&mut *stale);
+            nodes.refit(|index| self.leaves[index as usize].fat);
+            nodes
+        })
     }
 
     /// Visits the tree from its root: calls `meet` with the index of every box for which `enters`
@@ -179,37 +233,11 @@ impl BoundsTree {
     pub fn walk<S>(
         &self,
         state: &mut S,
-        mut enters: impl FnMut(&S, &Aabb) -> bool,
-        mut meet: impl FnMut(&mut S, u32),
+        enters: impl FnMut(&S, &Aabb) -> bool,
+        meet: impl FnMut(&mut S, u32),
     ) {
-        if self.root == NONE {
-            return;
-        }
-        // The tree is rarely deeper; what has no place here goes to the heap.
-        let (mut stack, mut height) = ([NONE; 64], 0);
-        let mut beyond = Vec::new();
-        let mut next = Some(self.root);
-        while let Some(at) = next {
-            let node = &self.nodes[at as usize];
-            if enters(state, &node.bounds) {
-                if node.is_leaf() {
-                    meet(state, node.links[0]);
-                } else {
-                    if height < stack.len() {
-                        stack[height] = node.links[1];
-                        height += 1;
-                    } else {
-                        beyond.push(node.links[1]);
-                    }
-                    next = Some(node.links[0]);
-                    continue;
-                }
-            }
-            next = beyond.pop().or_else(|| {
-                height = height.checked_sub(1)?;
-                Some(stack[height])
-            });
-        }
+        self.was_walked.store(true, Ordering::Relaxed);
+        self.nodes().walk(state, enters, meet);
     }
 }
 
@@ -274,7 +302,7 @@ mod tests {
             tree.set(index as u32, &before, &bounds);
             boxes[index] = bounds;
             if step == 9_999 || step == 19_999 {
-                tree.rebuild(&boxes);
+                tree.rebuild(boxes.iter().copied());
             }
             if step % 50 != 0 {
                 continue;
@@ -302,19 +330,20 @@ mod tests {
                 "step {step}"
             );
         }
+        let nodes = tree.nodes();
         let depth = |mut node: u32| {
             let mut depth = 0;
-            while tree.parents[node as usize] != NONE {
-                let parent = tree.parents[node as usize];
-                let above = &tree.nodes[parent as usize];
+            while nodes.parents[node as usize] != NONE {
+                let parent = nodes.parents[node as usize];
+                let above = &nodes.nodes[parent as usize];
                 assert!(above.links.contains(&node));
-                assert!(holds(&above.bounds, &tree.nodes[node as usize].bounds));
+                assert!(holds(&above.bounds, &nodes.nodes[node as usize].bounds));
                 (node, depth) = (parent, depth + 1);
             }
             depth
         };
-        let leaves = tree.leaves.iter().filter(|leaf| **leaf != NONE);
-        let deepest = leaves.map(|leaf| depth(*leaf)).max();
+        let leaves = tree.leaves.iter().filter(|leaf| leaf.node != NONE);
+        let deepest = leaves.map(|leaf| depth(leaf.node)).max();
         // A tree whose halves are equal is 11 deep. After 20 000 changes, most of them moves,
         // rotations are to keep it within three times that.
         assert!(deepest <= Some(33), "{deepest:?}");

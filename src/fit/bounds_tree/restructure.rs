@@ -1,27 +1,15 @@
-//! Adds leaves to a tree and removes them, and keeps it good to walk.
+//! Adds leaves to the nodes of a tree and removes them, and keeps them good to walk.
 
-use super::{BoundsTree, NONE, Node};
+use super::nodes::{NONE, Node, Nodes, half_area, join};
 use crate::Aabb;
 
-impl BoundsTree {
-    pub(super) fn add(&mut self, node: Node) -> u32 {
-        if let Some(at) = self.spare.pop() {
-            self.nodes[at as usize] = node;
-            self.parents[at as usize] = NONE;
-            return at;
-        }
-        self.nodes.push(node);
-        self.parents.push(NONE);
-        self.nodes.len() as u32 - 1
-    }
-
-    /// Adds a leaf where the areas of the boxes above it grow least.
-    pub(super) fn insert(&mut self, index: u32, bounds: Aabb) {
+impl Nodes {
+    /// Adds a leaf where the areas of the boxes above it grow least, and returns its node.
+    pub fn insert(&mut self, index: u32, bounds: Aabb) -> u32 {
         let leaf = self.add(Node::leaf(index, bounds));
-        self.leaves[index as usize] = leaf;
         if self.root == NONE {
             self.root = leaf;
-            return;
+            return leaf;
         }
         let mut beside = self.root;
         loop {
@@ -61,10 +49,11 @@ impl BoundsTree {
             self.rotate(at);
             at = self.parents[at as usize];
         }
+        leaf
     }
 
     /// Removes a leaf and makes the boxes above it smaller.
-    pub(super) fn remove(&mut self, leaf: u32) {
+    pub fn remove(&mut self, leaf: u32) {
         self.spare.push(leaf);
         let parent = self.parents[leaf as usize];
         if parent == NONE {
@@ -102,19 +91,6 @@ impl BoundsTree {
         links[usize::from(links[1] == old)] = new;
     }
 
-    /// Makes all boxes above a node hold `bounds`.
-    pub(super) fn widen_above(&mut self, node: u32, bounds: &Aabb) {
-        let mut at = self.parents[node as usize];
-        while at != NONE {
-            let node = &mut self.nodes[at as usize];
-            if holds(&node.bounds, bounds) {
-                break;
-            }
-            node.bounds = join(&node.bounds, bounds);
-            at = self.parents[at as usize];
-        }
-    }
-
     /// Exchanges a child of a node with a child of the other child, if that makes the box of the
     /// latter smaller.
     fn rotate(&mut self, at: u32) {
@@ -150,23 +126,4 @@ impl BoundsTree {
         self.parents[sinks as usize] = keeps;
         self.parents[rises as usize] = at;
     }
-}
-
-/// Returns the box around two boxes without a NaN.
-pub(super) fn join(a: &Aabb, b: &Aabb) -> Aabb {
-    Aabb {
-        min: a.min.min(b.min),
-        max: a.max.max(b.max),
-    }
-}
-
-/// Returns whether the first box holds all of the second.
-pub(super) fn holds(a: &Aabb, b: &Aabb) -> bool {
-    a.min.cmple(b.min).all() && a.max.cmpge(b.max).all()
-}
-
-/// Returns half the area of a box's surface; it is infinite for a box that is too large.
-pub(super) fn half_area(bounds: &Aabb) -> f32 {
-    let size = bounds.max - bounds.min;
-    size.x * size.y + size.y * size.z + size.z * size.x
 }
