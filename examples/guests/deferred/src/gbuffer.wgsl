@@ -1,4 +1,5 @@
-// Writes what the lighting needs of each pixel. The library's module `normal` and `camera.wgsl` precede it.
+// Writes what the lighting needs of each pixel. The library's module `normal` and `camera.wgsl`
+// precede it.
 
 struct Surface {
     @builtin(position) clip: vec4<f32>,
@@ -8,7 +9,8 @@ struct Surface {
 
 @vertex fn surface(
     @location(0) position: vec3<f32>,
-    @location(1) x: vec4<f32>, @location(2) y: vec4<f32>, @location(3) z: vec4<f32>, @location(4) w: vec4<f32>,
+    @location(1) x: vec4<f32>, @location(2) y: vec4<f32>,
+    @location(3) z: vec4<f32>, @location(4) w: vec4<f32>,
     @location(5) albedo: vec4<f32>,
 ) -> Surface {
     let position_render = mat4x4(x, y, z, w) * vec4(position, 1.0);

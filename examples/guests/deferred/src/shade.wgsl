@@ -34,7 +34,8 @@ struct Lights {
         let cosine = dot(normalize(-to_spot), lights.spot_direction.xyz);
         let cone = smoothstep(lights.cone_and_ranges.x, lights.cone_and_ranges.y, cosine);
         let spot = cone * local_light(to_spot, normal, lights.cone_and_ranges.z);
-        let lamp = local_light(lights.lamp_position.xyz - position, normal, lights.cone_and_ranges.w);
+        let to_lamp = lights.lamp_position.xyz - position;
+        let lamp = local_light(to_lamp, normal, lights.cone_and_ranges.w);
         let irradiance = vec3(0.25, 0.28, 0.33) + vec3(2.0, 1.9, 1.7) * sun * visible.x
             + vec3(0.8, 1.6, 2.4) * spot * visible.y + vec3(2.4, 1.4, 0.6) * lamp * visible.z;
         radiance = textureLoad(albedos, id.xy, 0).rgb / PI * irradiance;

@@ -110,7 +110,7 @@ impl Window {
             aspect: 1.0,
             keeps_nothing: self.keeps_nothing,
         };
-        let output = self.context.run_ui(input, |ui| show(ui, &mut state));
+        let mut output = self.context.run_ui(input, |ui| show(ui, &mut state));
         let jobs = self
             .context
             .tessellate(output.shapes, output.pixels_per_point);
@@ -124,6 +124,7 @@ impl Window {
                     .update_texture(&self.gpu.device, &self.gpu.queue, *id, delta);
             }
         }
+        output.textures_delta.clear();
         self.paint(&jobs, &screen);
         Ok(readback::rgba8(&self.gpu, &self.target).into_raw())
     }

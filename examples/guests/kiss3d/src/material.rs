@@ -25,7 +25,8 @@ pub struct ShadowedScene {
 }
 
 impl ShadowedScene {
-    /// Makes the shadows and registers their material. A window must exist.
+    /// Makes the shadows and registers their material, in place of an earlier one. A window must
+    /// exist.
     pub fn new() -> Result<Self, Box<dyn Error>> {
         let state = Rc::new(RefCell::new(State::new()?));
         let material: Box<dyn Material3d> = Box::new(ShadowedMaterial(state.clone()));
@@ -54,12 +55,6 @@ impl ShadowedScene {
 
     pub fn state(&self) -> std::cell::RefMut<'_, State> {
         self.state.borrow_mut()
-    }
-}
-
-impl Drop for ShadowedScene {
-    fn drop(&mut self) {
-        MaterialManager3d::get_global_manager(|manager| manager.remove("shadowed"));
     }
 }
 
@@ -179,8 +174,8 @@ impl Material3d for ShadowedMaterial {
         _camera: &mut dyn Camera3d,
         _lights: &LightCollection,
         data: &ObjectData3d,
-        _mesh: &mut GpuMesh3d,
-        _instances: &mut InstancesBuffer3d,
+        mesh: &mut GpuMesh3d,
+        instances: &mut InstancesBuffer3d,
         _gpu_data: &mut dyn GpuData,
         pass: &mut wgpu::RenderPass<'_>,
         context: &RenderContext,
@@ -193,7 +188,7 @@ impl Material3d for ShadowedMaterial {
             pass.set_pipeline(&state.pipeline.get(context.sample_count));
             pass.set_bind_group(0, &state.frame_group, &[]);
             pass.set_bind_group(2, state.shadows.bindings.bind_group(), &[]);
-            object.draw(pass);
+            object.draw(pass, mesh, instances);
         }
     }
 }

@@ -201,9 +201,35 @@ impl SceneObject {
         offsets.iter().zip(columns.chunks(3)).map(model).collect()
     }
 
-    /// Sets bind group 1 and the buffers of positions, and draws.
+    /// Draws the object with positions alone, as depth maps need it.
     pub fn draw_positions(&self, pass: &mut wgpu::RenderPass<'_>) {
-        let (mesh, copies) = (self.mesh.borrow(), self.instances.borrow());
+        self.draw_buffers(pass, &self.mesh.borrow(), &self.instances.borrow());
+    }
+
+    /// Draws the object with normals and colours. kiss3d has borrowed the mesh and the instances
+    /// while it draws, and passes them on.
+    pub fn draw(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        mesh: &GpuMesh3d,
+        copies: &InstancesBuffer3d,
+    ) {
+        let normals = mesh.normals().read().unwrap();
+        if let (Some(normals), Some(colors)) = (normals.buffer(), copies.colors.buffer()) {
+            pass.set_vertex_buffer(3, normals.slice(..));
+            pass.set_vertex_buffer(4, colors.slice(..));
+            self.draw_buffers(pass, mesh, copies);
+        }
+    }
+
+    /// Sets bind group 1 and the buffers of positions, and draws. Buffers are replaced when they
+    /// grow, so they are looked up in every draw.
+    fn draw_buffers(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        mesh: &GpuMesh3d,
+        copies: &InstancesBuffer3d,
+    ) {
         let (coords, faces) = (mesh.coords().read().unwrap(), mesh.faces().read().unwrap());
         let vectors = [&*coords, &copies.positions, &copies.deformations];
         for (slot, vector) in (0..).zip(vectors) {
@@ -217,18 +243,8 @@ impl SceneObject {
         };
         pass.set_index_buffer(indices.slice(..), VERTEX_INDEX_FORMAT);
         pass.set_bind_group(1, &self.group, &[]);
-        pass.draw_indexed(0..mesh.num_indices(), 0, 0..copies.len() as u32);
-    }
-
-    /// Sets the buffers of normals and colours as well, and draws.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        let (mesh, copies) = (self.mesh.borrow(), self.instances.borrow());
-        let normals = mesh.normals().read().unwrap();
-        if let (Some(normals), Some(colors)) = (normals.buffer(), copies.colors.buffer()) {
-            pass.set_vertex_buffer(3, normals.slice(..));
-            pass.set_vertex_buffer(4, colors.slice(..));
-            self.draw_positions(pass);
-        }
+        let (indices, copies) = (3 * faces.len() as u32, copies.len() as u32);
+        pass.draw_indexed(0..indices, 0, 0..copies);
     }
 }
 

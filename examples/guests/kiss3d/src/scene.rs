@@ -57,18 +57,18 @@ impl Demo {
             .set_casts_shadows(false);
 
         let sun =
-            root.add_light(Light::directional(Vec3::new(-0.7, -1.0, -0.4)).with_intensity(1.6));
+            root.add_light(Light::directional(Vec3::new(-0.7, -1.0, -0.4)).with_intensity(1.1));
         let spot = root.add_light(
             Light::spot(0.42, 0.5, 30.0)
                 .with_color(Color::new(0.5, 0.8, 1.0, 1.0))
-                .with_intensity(4.0),
+                .with_intensity(1.8),
         );
         let spot = aim(spot, Vec3::new(-5.0, 6.0, 5.0), Vec3::new(-1.5, 0.0, 0.0));
         let lamp = root
             .add_light(
                 Light::point(9.0)
                     .with_color(Color::new(1.0, 0.7, 0.4, 1.0))
-                    .with_intensity(2.5),
+                    .with_intensity(1.6),
             )
             .set_position(LAMP);
         Self {

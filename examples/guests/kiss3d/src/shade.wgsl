@@ -39,7 +39,8 @@ struct Surface {
 ) -> Surface {
     let position = object_position(vertex, offset, x, y, z);
     let turned = object_turned(normal / object.scale.xyz, x, y, z);
-    return Surface(frame.clip_from_world * vec4(position, 1.0), position, turned, object.color * color);
+    let clip = frame.clip_from_world * vec4(position, 1.0);
+    return Surface(clip, position, turned, object.color * color);
 }
 
 @fragment fn shade(in: Surface) -> @location(0) vec4<f32> {
