@@ -16,8 +16,8 @@ pub struct ImageError {
 }
 
 impl ImageError {
-    /// Measures the image of a perspective camera. `visibility` returns what a pixel shows; `None` for one that tells
-    /// nothing.
+    /// Measures the image of a perspective camera. `visibility` returns what a pixel shows; `None`
+    /// for one that tells nothing.
     pub fn measure(
         world: &World,
         eye: DVec3,
