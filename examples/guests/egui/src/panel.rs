@@ -101,7 +101,7 @@ impl Scene {
         if std::mem::replace(&mut self.state, state).cube_angle != state.cube_angle {
             let turn = Mat4::from_rotation_y(state.cube_angle);
             let (mesh, mut instance) = textbook::parts().into_iter().nth(1).expect("a cube");
-            instance.render_from_model = instance.render_from_model * turn;
+            instance.render_from_model *= turn;
             self.objects[1] = Object::new(&self.gpu.device, &mesh, instance);
             self.shadows.place(1, &self.objects[1])?;
         }
