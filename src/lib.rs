@@ -174,7 +174,9 @@
 //! the render coordinates from which it was drawn, and the bias allows for that rounding. The map
 //! is drawn again where the rounding exceeds both twice that of a new map and 1/64 of a texel.
 //!
-//! [`troubleshooting`] tells what faults look like, what causes them and what to do. [`hard_cases`]
+//! [`engines`] tells how engines of different shapes take the library in: those that give hooks
+//! only, that keep objects in a hash map, whose buffers grow, that draw mirrors, that shade in
+//! compute shaders. [`troubleshooting`] tells what faults look like, what causes them and what to do. [`hard_cases`]
 //! lists scenes and inputs that break shadow maps, with what the crate promises for each and what
 //! was measured. [`glossary`] explains the terms of the field, with formulas and sources.
 //!
@@ -314,6 +316,10 @@ pub mod report {
     pub use crate::fit::{SliceReport, TexelRect};
     pub use crate::receive::{ShadowReport, ViewReport, ViewStatus};
 }
+
+#[cfg(doc)]
+#[doc = include_str!("../doc/engines.md")]
+pub mod engines {}
 
 #[cfg(doc)]
 #[doc = include_str!("../doc/hard_cases.md")]

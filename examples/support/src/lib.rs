@@ -8,6 +8,8 @@
 //! phong.rs        the pass that draws them; phong.wgsl: its vertex stage and Blinn-Phong
 //! picture.rs      PNG files
 //! map_picture.rs  a shadow map as an image
+//! image_error.rs  the visibility in an image against cast rays
+//! keeping.rs      kept maps against maps that are drawn in every frame
 //! textbook.rs     the scene of the classic tutorial
 //! town/           a town of some thousand buildings
 //! hall/           a hall with a sun, spots and lamps
@@ -20,6 +22,8 @@ pub mod arguments;
 pub mod camera;
 pub mod gltf_file;
 pub mod hall;
+pub mod image_error;
+pub mod keeping;
 pub mod map_picture;
 pub mod mesh;
 pub mod phong;
