@@ -285,14 +285,14 @@ impl LocalLights {
         if !self.maps.is_unchanged() || self.last_lights != lights {
             return false;
         }
-        let due = |layer: &mut PoolLayer| layer.count_frame() && !layer.is_settled();
-        if self.pool_layer.as_mut().is_some_and(due) {
+        let is_same_frame = changes.is_empty();
+        let layer = self.pool_layer.as_ref();
+        if layer.is_some_and(|layer| !layer.keeps_sizes(is_same_frame)) {
             return false;
         }
         self.fits.clear();
         for light in lights {
             let fit = &self.slots[light.slot as usize].fit;
-            let layer = self.pool_layer.as_ref();
             let may_change = fit.may_change(&self.input(frame, light, layer), changes);
             let Some(fit) = (!may_change).then(|| fit.again()).flatten() else {
                 return false;
@@ -301,6 +301,9 @@ impl LocalLights {
         }
         for (light, fit) in lights.iter().zip(self.fits.drain(..)) {
             self.slots[light.slot as usize].fit = fit;
+        }
+        if let Some(layer) = &mut self.pool_layer {
+            layer.keep_sizes(is_same_frame);
         }
         true
     }

@@ -116,15 +116,24 @@ impl PoolLayer {
         self.settled = false;
     }
 
-    /// Counts a frame, and returns whether a prediction is due.
+    /// Counts a frame for which the lights are fitted anew, and returns whether a prediction is
+    /// due.
     pub fn count_frame(&mut self) -> bool {
-        self.frames = self.frames.saturating_add(1);
+        self.settled = false;
+        self.frames += 1;
         self.frames >= FRAMES_BETWEEN_PREDICTIONS
     }
 
-    /// Returns whether a prediction for the frame of the last one would change nothing.
-    pub fn is_settled(&self) -> bool {
-        self.settled
+    /// Returns whether the next frame can leave all sizes as they are without a prediction: none is
+    /// due, or nothing has changed since the last one, which would have the same result.
+    pub fn keeps_sizes(&self, is_same_frame: bool) -> bool {
+        self.frames + 1 < FRAMES_BETWEEN_PREDICTIONS || (self.settled && is_same_frame)
+    }
+
+    /// Counts a frame for which no light is fitted anew. A prediction that is due counts as made.
+    pub fn keep_sizes(&mut self, is_same_frame: bool) {
+        self.settled &= is_same_frame;
+        self.frames = (self.frames + 1) % FRAMES_BETWEEN_PREDICTIONS;
     }
 
     /// Returns whether a view that something casts into has never been considered.

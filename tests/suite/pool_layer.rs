@@ -7,8 +7,9 @@ use shadow_support::mesh::Mesh;
 use shadow_support::probe::Point;
 use shadow_support::random::Random;
 use wgpu_shadows::{
-    Aabb, CameraView, OmniLight, ShadowCaster, pool::OmniShadowPool, pool::PoolDescriptor,
-    pool::PoolLight, pool::ShadowSlot, report::ShadowReport, report::ViewStatus,
+    Aabb, CameraView, Casters, Coverage, OmniLight, ShadowCaster, ShadowFrameDescriptor,
+    ShadowScene, pool::OmniShadowPool, pool::PoolDescriptor, pool::PoolLight, pool::ShadowSlot,
+    report::ShadowReport, report::ViewStatus,
 };
 
 use crate::fixtures::ask::{Ask, submitted};
@@ -279,4 +280,63 @@ fn each_light_shows_its_own_shadows_whatever_happens() {
         "{asked} {dark} {deferred}"
     );
     assert!(sizes.len() > 3, "{sizes:?}");
+}
+
+/// The camera watches one lamp until its texels are settled, and cuts to another, where it stays.
+/// Nothing changes from then on; the second lamp has more texels than the first all the same.
+#[test]
+fn texels_follow_a_camera_that_cuts_and_stands_still() {
+    let gpu = gpu();
+    let pipeline = default_pipeline(gpu);
+    let descriptor = PoolDescriptor {
+        capacity: 2,
+        map_size: 1024,
+        ..Default::default()
+    };
+    let mut pool = OmniShadowPool::new(&gpu.device, &descriptor).expect("a valid pool");
+    let places = [-7.0, 7.0];
+    let lights = places.map(|x| PoolLight {
+        slot: pool.insert().expect("a free slot"),
+        light: OmniLight {
+            position_world: DVec3::new(x, 2.5, 0.0),
+            range: 6.0,
+        },
+        importance: 1.0,
+    });
+    let cube = Mesh::cuboid(Vec3::splat(-0.5), Vec3::splat(0.5));
+    let casters = places.map(|x| {
+        let transform = Mat4::from_translation(Vec3::new(x as f32 + 0.8, 0.5, 0.4));
+        cube.caster(gpu, &pipeline, transform)
+    });
+    let list: Vec<&dyn ShadowCaster> = casters.iter().map(|caster| caster as _).collect();
+    let mut scene = ShadowScene::new();
+    let mut texels_before_and_after = [[0, 0]; 2];
+    for (x, texels) in places.into_iter().zip(&mut texels_before_and_after) {
+        let eye = DVec3::new(x, 3.0, 4.0);
+        let camera = Camera::modern(eye, DVec3::new(x, 0.0, 0.0), 0.9, 1.6).view();
+        // Sizes change by predictions, which are made every 16 frames and have to agree. The cut comes
+        // between two of them.
+        for _ in 0..75 {
+            let frame = scene.frame(&ShadowFrameDescriptor {
+                origin: DVec3::ZERO,
+                coverage: Coverage::Cameras(&[camera]),
+                casters: Casters::List(&list),
+                receivers: &[FLOOR],
+            });
+            let mut encoder = gpu.encoder();
+            let report = pool.record(&mut encoder, &frame.expect("a frame"), &lights, None);
+            let views = &report.expect("a valid frame").views;
+            let area = |light: usize| -> u32 {
+                let own = &views[6 * light..6 * light + 6];
+                own.iter()
+                    .map(|view| view.texels.size.element_product())
+                    .sum()
+            };
+            *texels = [area(0), area(1)];
+            gpu.submit(encoder);
+        }
+    }
+    let [[first_seen, second_unseen], [first_unseen, second_seen]] = texels_before_and_after;
+    assert!(first_seen > second_unseen, "{texels_before_and_after:?}");
+    assert!(second_seen > first_unseen, "{texels_before_and_after:?}");
 }

@@ -4,8 +4,8 @@ use glam::{DVec3, Vec3};
 use shadow_support::camera::Camera;
 use shadow_support::random::Random;
 use wgpu_shadows::{
-    Aabb, CasterPipeline, CasterSet, Casters, Coverage, DirectionalLight, DirectionalShadow,
-    DirectionalShadowDescriptor, Revision, ShadowFrameDescriptor, ShadowScene,
+    Aabb, CascadeLayout, CasterPipeline, CasterSet, Casters, Coverage, DirectionalLight,
+    DirectionalShadow, DirectionalShadowDescriptor, Revision, ShadowFrameDescriptor, ShadowScene,
     caster::CasterPipelineDescriptor, caster::CasterShape, report::ViewStatus,
 };
 
@@ -47,7 +47,7 @@ fn casters_that_a_camera_leaves_behind_are_kept_in_the_maps() {
         &gpu().device,
         &DirectionalShadowDescriptor {
             map_size: 1024,
-            cascades: 4,
+            layout: CascadeLayout::fixed(4),
             ..Default::default()
         },
     )
