@@ -272,7 +272,8 @@ impl DirectionalFit {
 
     /// Returns the light-space bounds of a cascade that something casts into, and adds its casters
     /// to `drawn`: those of which some part is within the map rectangle, seen along the light, and
-    /// in front of the far plane, and that can shadow what is visible or was of late. `scratch` is the one that the fit has filled.
+    /// in front of the far plane, and that can shadow what is visible or was of late. `scratch` is
+    /// the one that the fit has filled.
     pub fn cull(
         &self,
         cascade: usize,

@@ -1,9 +1,7 @@
 //! Keeps the layout of a light's cascades from frame to frame.
 
 use crate::fit::layout_choice::{Layout, Prediction};
-
-/// Is the number of frames from one prediction to the next.
-const FRAMES_BETWEEN_PREDICTIONS: u32 = 16;
+use crate::fit::predicted_error::FRAMES_BETWEEN_PREDICTIONS;
 
 /// Is the factor by which the cost of another layout must be lower for a change. The error goes
 /// with the number of texels to the power of -1/4, so that the change is worth 1.9 times the

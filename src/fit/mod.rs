@@ -100,7 +100,9 @@ pub(crate) use local::LocalFit;
 pub(crate) use local_input::{LocalInput, MAX_LOCAL_VIEWS};
 pub(crate) use local_need::{LightShape, LocalNeeds, ViewNeed};
 pub(crate) use map_rect::{LightSpaceBounds, MapRect};
-pub(crate) use predicted_error::{LARGEST_TEXEL_PIXELS, root_mean_error};
+pub(crate) use predicted_error::{
+    FRAMES_BETWEEN_PREDICTIONS, LARGEST_TEXEL_PIXELS, root_mean_error,
+};
 pub(crate) use reached::Reached;
 pub(crate) use region::HalfSpaces;
 pub use split::CascadeSplit;

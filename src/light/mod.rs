@@ -8,8 +8,10 @@
 //! omni.rs         OmniShadow: a light that shines in every direction
 //! pool.rs         pools of spot and point lights
 //! local.rs        what spot and point lights have in common
-//! local_budget.rs  which lights are refreshed under a budget
-//! local_sizes.rs  how large the views of a pool's lights are; pool_layer.rs: which texels they have
+//! local_candidate.rs  the fit of one of them, and what would refresh it
+//! local_budget.rs     which of them are refreshed under a budget
+//! local_sizes.rs      how large the views of a pool's lights are
+//! pool_layer.rs       which texels they have
 //! distance_limit.rs   where shadows end
 //! large_triangles.rs  the rounding that large triangles bring
 //! ```
@@ -19,6 +21,7 @@ mod distance_limit;
 mod large_triangles;
 mod local;
 mod local_budget;
+mod local_candidate;
 mod local_sizes;
 mod omni;
 mod pool;

@@ -1,12 +1,9 @@
 //! Divides the layer of a pool among the views of its lights, from frame to frame.
 
 use crate::fit::{
-    Hold, LARGEST_TEXEL_PIXELS, Packing, SquareSizes, TexelRect, ViewNeed, Wanted, root_mean_error,
-    side_texels,
+    FRAMES_BETWEEN_PREDICTIONS, Hold, LARGEST_TEXEL_PIXELS, Packing, SquareSizes, TexelRect,
+    ViewNeed, Wanted, root_mean_error, side_texels,
 };
-
-/// Is the number of frames from one prediction to the next.
-const FRAMES_BETWEEN_PREDICTIONS: u32 = 16;
 
 /// Is the factor by which a need may shrink from one prediction to the next. A camera that looks
 /// away for a moment finds most of the texels again.
@@ -16,7 +13,9 @@ const SHRINK: f64 = 0.75;
 /// of the pool are too many: the border that a filter needs would take too much of them.
 const LEAST_SIDE_TEXELS: u32 = 16;
 
-/// Is the weight of a view on which no ray has fallen, in relation to the mean of a ray.
+/// Is the weight of a view on which no ray has fallen, in relation to the mean of a ray. What is
+/// seen there is smaller than the distance of rays in the image, and may be nothing: the mean of
+/// such a view is below one ray, and its texels are few but not none.
 const UNSEEN_WEIGHT: f64 = 0.25;
 
 /// Holds the squares of the views of a pool, and how large they ought to be.

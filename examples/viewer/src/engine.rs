@@ -7,8 +7,8 @@ use example_support::phong::Lighting;
 use glam::Vec3;
 use shadow_support::gpu::Gpu;
 use shadow_support::measure::error::Errors;
-use wgpu_shadows::report::{ShadowReport, ViewStatus};
-use wgpu_shadows::{DirectionalLight, ShadowMaps};
+use wgpu_shadows::DirectionalLight;
+use wgpu_shadows::report::ShadowReport;
 
 use crate::device_clock::DeviceClock;
 use crate::picture::{Contents, Picture};
@@ -317,7 +317,7 @@ impl Engine {
             cost.passes += report.passes;
             cost.draws += report.draws();
             cost.triangles += report.triangles();
-            cost.texels += drawn_texels(maps);
+            cost.texels += maps.report().texels();
             cost.bytes += report.bytes_held;
         }
         Some(cost)
@@ -368,13 +368,6 @@ impl Engine {
         let name = if is_textbook { "Textbook: " } else { "" };
         format!("{name}{filter}, {maps}{covers}")
     }
-}
-
-fn drawn_texels(maps: &ShadowMaps) -> u64 {
-    let views = maps.report().views.iter();
-    let drawn = views.filter(|view| view.status == ViewStatus::Drawn);
-    let texels = drawn.map(|view| u64::from(view.texels.size.x) * u64::from(view.texels.size.y));
-    texels.sum()
 }
 
 /// Returns the cameras of both sides, which differ in the distance where shadows end.

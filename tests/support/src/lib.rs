@@ -8,7 +8,7 @@
 //! mesh.rs       generated meshes, as casters and as triangles; triangle.rs: triangles in f64
 //! camera.rs     cameras of every kind, with the rays of their pixels
 //! probe.rs      a compute shader that evaluates WGSL at given points
-//! scene.rs      meshes, a light and a camera; scenes.rs: the generated ones
+//! scene.rs      meshes, a light and a camera; scenes.rs, deep_scenes.rs: the generated ones
 //! truth.rs      the ray caster, checked by closed_form.rs
 //! technique.rs  anything that fills maps and is looked up: library.rs, textbook/; what a lookup
 //!               costs: lookup_cost.rs
@@ -21,6 +21,7 @@ pub mod camera;
 pub mod clock;
 pub mod closed_form;
 pub mod compositions;
+mod deep_scenes;
 pub mod gpu;
 pub mod library;
 pub mod lookup_cost;
