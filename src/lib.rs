@@ -176,9 +176,10 @@
 //!
 //! [`engines`] tells how engines of different shapes take the library in: those that give hooks
 //! only, that keep objects in a hash map, whose buffers grow, that draw mirrors, that shade in
-//! compute shaders. [`troubleshooting`] tells what faults look like, what causes them and what to do. [`hard_cases`]
-//! lists scenes and inputs that break shadow maps, with what the crate promises for each and what
-//! was measured. [`glossary`] explains the terms of the field, with formulas and sources.
+//! compute shaders. [`troubleshooting`] tells what faults look like, what causes them and what to
+//! do. [`hard_cases`] lists scenes and inputs that break shadow maps, with what the crate promises
+//! for each and what was measured. [`glossary`] explains the terms of the field, with formulas and
+//! sources.
 //!
 //! # Own bind groups
 //!

@@ -40,8 +40,8 @@ struct Row {
     squares: String,
 }
 
-/// Prints the errors by need and with equal maps for each number of bytes, for an image of `picture`
-/// pixels.
+/// Prints the errors by need and with equal maps for each number of bytes, for an image of
+/// `picture` pixels.
 pub fn measure(gpu: &Gpu, scene: &LampScene, picture: [u32; 2]) -> Result<(), Box<dyn Error>> {
     let pairs = pairs(scene, picture);
     println!(

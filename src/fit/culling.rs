@@ -1,4 +1,4 @@
-//! Determines for what the casters of a cascade are culled.
+//! Bounds what casters must be able to shadow in order to be drawn.
 
 use crate::fit::visible::SeenBounds;
 
@@ -12,13 +12,13 @@ const HELD_FRAMES: u32 = 120;
 /// A camera that walks leaves casters behind whose shadows it no longer sees. They are still where
 /// the map shows them, so the map stays right, and is not drawn again for each of them.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct CulledFor {
+pub(crate) struct HeldVisible {
     pub visible: SeenBounds,
     /// Counts the frames in which it was more than what was visible then.
     frames: u32,
 }
 
-impl CulledFor {
+impl HeldVisible {
     /// Returns the bounds for a frame that sees `visible`. `held` are those of the frame before, if
     /// the cascade has stayed the same.
     pub fn following(held: Option<Self>, visible: &SeenBounds) -> Self {

@@ -7,7 +7,7 @@ use crate::fit::camera::CameraFrustum;
 use crate::fit::cascade_bounds::Cascade;
 use crate::fit::caster_parts::PartScratch;
 use crate::fit::change_log::ChangedBoxes;
-use crate::fit::culling::CulledFor;
+use crate::fit::culling::HeldVisible;
 use crate::fit::directional_casters::{DirectionalCaster, DirectionalCasters, light_box_around};
 use crate::fit::directional_input::{FitInput, FitLimits, Region};
 use crate::fit::extruded_rect::ExtrudedRect;
@@ -39,7 +39,7 @@ pub(crate) struct DirectionalFit {
     /// Bounds what was visible.
     visible: Option<SeenBounds>,
     /// Holds what the casters of each cascade are culled for.
-    culled_for: [Option<CulledFor>; MAX_CASCADES],
+    held_visible: [Option<HeldVisible>; MAX_CASCADES],
     /// Holds the axes of the light in the last frame.
     axes: Option<LightAxes>,
     /// Holds the depths along the view between which receivers are visible.
@@ -101,7 +101,7 @@ impl DirectionalFit {
     ) -> Result<Self, ShadowError> {
         let visible = find_visible(input, &mut scratch.lists);
         scratch.visible = visible;
-        let held = self.culled_for.iter().flatten();
+        let held = self.held_visible.iter().flatten();
         let shadowed = held.fold(visible, |all, held| all.union(&held.visible));
         DirectionalCasters::list(&input.space, input.casters, &shadowed, &mut scratch.casters);
         divide_casters(input, scratch);
@@ -159,8 +159,8 @@ impl DirectionalFit {
             next.held[cascade] = held_bounds.or(next.held[cascade]);
             let light_bounds = held_bounds.map(|held| held.bounds());
             let is_held = light_bounds == history.light_bounds[cascade];
-            let culled_for = history.culled_for[cascade].filter(|_| is_held);
-            next.culled_for[cascade] = Some(CulledFor::following(culled_for, &visible));
+            let held_visible = history.held_visible[cascade].filter(|_| is_held);
+            next.held_visible[cascade] = Some(HeldVisible::following(held_visible, &visible));
             if let Some(light_bounds) = &light_bounds {
                 influence.union(&light_bounds.bounds());
             }
@@ -188,7 +188,7 @@ impl DirectionalFit {
         if !same_depths {
             return None;
         }
-        for held in next.culled_for.iter_mut().flatten() {
+        for held in next.held_visible.iter_mut().flatten() {
             *held = held.again(self.visible.as_ref()?)?;
         }
         if let Some(layout) = &self.layout {
@@ -217,7 +217,7 @@ impl DirectionalFit {
         let space = &input.space;
         let spacing = Spacing::around(space.origin, influence);
         let toward_light = space.axes.toward_light();
-        let held = self.culled_for.iter().flatten();
+        let held = self.held_visible.iter().flatten();
         let visible = held.fold(*visible, |all, held| all.union(&held.visible));
         changes.iter().any(|changed| {
             let bounds = &changed.bounds;
@@ -288,7 +288,7 @@ impl DirectionalFit {
             light_bounds.holds_part_of(&spacing.widest(light)) && volume.meets(bounds)
         };
         let casters = DirectionalCasters {
-            visible: &self.culled_for[cascade].as_ref()?.visible,
+            visible: &self.held_visible[cascade].as_ref()?.visible,
             ..scratch.whole_casters(&input.space, input.casters)
         };
         casters.walk(

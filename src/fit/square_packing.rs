@@ -1,5 +1,5 @@
-//! Packs squares into a layer, each a half, a quarter, an eighth and so on of its side, and moves as
-//! few of them as it can.
+//! Packs squares into a layer, each a half, a quarter, an eighth and so on of its side, and moves
+//! as few of them as it can.
 //!
 //! Such squares are the nodes of a quadtree. Taken from the largest to the smallest, they never
 //! leave a gap in which another would not fit: where the squares that are as large as a new one, or

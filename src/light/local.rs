@@ -6,7 +6,6 @@ use glam::DVec3;
 use crate::cast::ViewDraws;
 use crate::fit::{LightAxes, LocalFit, LocalNeeds, MAX_LOCAL_VIEWS, Reached};
 use crate::light::distance_limit::range_limit;
-use crate::light::local_candidate::Candidate;
 use crate::light::pool_layer::PoolLayer;
 use crate::light::scene::FrameVersion;
 use crate::receive::{ALL_TEXELS, LayerState, MapsFrame, ShadowMaps, ShadowMapsDescriptor};
@@ -49,6 +48,20 @@ pub(super) struct SlotState {
     position_world: DVec3,
     /// Is the range that the light had then, in world units.
     range: f32,
+}
+
+/// Holds the new fit of a light and the draws that would refresh it.
+#[derive(Debug)]
+pub(super) struct Candidate {
+    pub fit: LocalFit,
+    pub draws: [Option<ViewDraws>; MAX_LOCAL_VIEWS],
+    /// Holds the views of `draws`.
+    pub views: [Option<ShadowView>; MAX_LOCAL_VIEWS],
+    /// Counts the depth passes that its views need.
+    pub needed: u32,
+    pub refreshed: bool,
+    /// Has a bit for each view for which there is no room in the layer.
+    pub without_room: u32,
 }
 
 /// Describes a light of a frame, in terms that spot and point lights have in common.

@@ -1,7 +1,6 @@
 //! Selects the lights that are refreshed under a budget of depth passes.
 
-use crate::light::local::{LocalLights, LocalPlacement};
-use crate::light::local_candidate::Candidate;
+use crate::light::local::{Candidate, LocalLights, LocalPlacement};
 
 /// Is the least importance that a light with an importance above 0 counts for, as a fraction of the
 /// greatest in the frame.

@@ -3,24 +3,10 @@
 use glam::UVec2;
 
 use crate::cast::ViewDraws;
-use crate::fit::{LocalFit, LocalInput, MAX_LOCAL_VIEWS, PerspectiveView, TexelRect};
-use crate::light::local::{LocalLights, LocalPlacement};
+use crate::fit::{LocalInput, MAX_LOCAL_VIEWS, PerspectiveView, TexelRect};
+use crate::light::local::{Candidate, LocalLights, LocalPlacement};
 use crate::light::pool_layer::PoolLayer;
 use crate::{ShadowError, ShadowFrame, ShadowView};
-
-/// Holds the new fit of a light and the draws that would refresh it.
-#[derive(Debug)]
-pub(super) struct Candidate {
-    pub fit: LocalFit,
-    pub draws: [Option<ViewDraws>; MAX_LOCAL_VIEWS],
-    /// Holds the views of `draws`.
-    pub views: [Option<ShadowView>; MAX_LOCAL_VIEWS],
-    /// Counts the depth passes that its views need.
-    pub needed: u32,
-    pub refreshed: bool,
-    /// Has a bit for each view for which there is no room in the layer.
-    pub without_room: u32,
-}
 
 /// Is the number of texels per side of a view for which the near planes of a pool are chosen, so
 /// that they do not move when sizes change: that of a single light by default.

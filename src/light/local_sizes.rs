@@ -1,8 +1,7 @@
 //! Chooses the sizes of the views of a pool's lights, and gives them their texels.
 
 use crate::fit::{LightShape, Region};
-use crate::light::local::{LocalLights, LocalPlacement};
-use crate::light::local_candidate::Candidate;
+use crate::light::local::{Candidate, LocalLights, LocalPlacement};
 use crate::light::pool_layer::{PoolLayer, Request};
 use crate::{ShadowError, ShadowFrame};
 

@@ -244,11 +244,10 @@ macro_rules! pool {
             /// `max_views` is the budget: the largest number of depth passes to record in this
             /// frame, or `None` for no limit. A view takes one pass, or two where its static-caster
             /// cache is drawn as well. A view whose size changes takes one, and a view that has to
-            /// make room for another takes one. The most important lights are
-            /// refreshed first, and at least one is, whatever it costs. The others keep their last
-            /// map and are reported as [`Deferred`](crate::report::ViewStatus::Deferred). A light
-            /// that has never been drawn, or not since `invalidate`, is lit everywhere until it is
-            /// refreshed.
+            /// make room for another takes one. The most important lights are refreshed first, and
+            /// at least one is, whatever it costs. The others keep their last map and are reported
+            /// as [`Deferred`](crate::report::ViewStatus::Deferred). A light that has never been
+            /// drawn, or not since `invalidate`, is lit everywhere until it is refreshed.
             ///
             /// The encoder must be submitted before any work that samples these shadows, and
             /// encoders must be submitted in the order in which they were recorded ([what a kept

@@ -5,8 +5,8 @@ use crate::cast::{VIEW_UNIFORM_BYTES, caster_group, shared_layer_group};
 use crate::gpu::{Need, allocated_layers};
 use crate::receive::view_uniform_bytes;
 
-/// Accepts devices whose limits suffice for a light with `views` views, in one layer that they share
-/// or in a layer each. `field` is the path of the field that sets their number.
+/// Accepts devices whose limits suffice for a light with `views` views, in one layer that they
+/// share or in a layer each. `field` is the path of the field that sets their number.
 pub(crate) fn check_layers(
     device: &wgpu::Device,
     field: &'static str,

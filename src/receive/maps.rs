@@ -152,8 +152,8 @@ impl ShadowMaps {
     /// Returns the depth texture. Its depths are reversed: near 1, far 0. Its format is
     /// `Depth32Float`, or that of a directional light's [`DepthFormat`](crate::DepthFormat). It has
     /// one layer per cascade, spot light or cube face (+x, -x, +y, -y, +z, -z), and a single layer
-    /// under [`CascadeLayout::Automatic`](crate::CascadeLayout::Automatic) and for a pool. It can be
-    /// copied from on all backends but OpenGL.
+    /// under [`CascadeLayout::Automatic`](crate::CascadeLayout::Automatic) and for a pool. It can
+    /// be copied from on all backends but OpenGL.
     pub fn texture(&self) -> &wgpu::Texture {
         self.map.texture()
     }

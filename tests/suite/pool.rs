@@ -171,9 +171,9 @@ pub(super) fn bits(values: &[f32]) -> Vec<u32> {
     values.iter().map(|value| value.to_bits()).collect()
 }
 
-/// Checks that visibilities are those of the same map somewhere else in a layer of `map_size` texels
-/// a side. A position of a lookup then has the rounding `2uN` of the sum and of the product that
-/// make it, and the default filter turns a texel into at most four times its length of
+/// Checks that visibilities are those of the same map somewhere else in a layer of `map_size`
+/// texels a side. A position of a lookup then has the rounding `2uN` of the sum and of the product
+/// that make it, and the default filter turns a texel into at most four times its length of
 /// visibility. A vertex is rounded to 1/256 of a texel in other directions, which moves an edge by
 /// twice that; that is seen only where one passes.
 pub(super) fn assert_same_map(seen: &[f32], wanted: &[f32], map_size: u32) {

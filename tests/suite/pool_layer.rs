@@ -1,5 +1,5 @@
-//! Tests the layer that the lights of a pool share: whatever comes, goes, moves and waits, each light
-//! shows its own shadows or none.
+//! Tests the layer that the lights of a pool share: whatever comes, goes, moves and waits, each
+//! light shows its own shadows or none.
 
 use glam::{DVec3, Mat4, Vec3};
 use shadow_support::camera::Camera;
@@ -283,8 +283,8 @@ fn each_light_shows_its_own_shadows_whatever_happens() {
 }
 
 /// The camera stands beside one of two lamps until its texels are settled, cuts to the other, where
-/// it stays, and cuts back. Nothing changes after a cut; the lamp that is near comes to have as many
-/// texels as the other, or more, all the same.
+/// it stays, and cuts back. Nothing changes after a cut; the lamp that is near comes to have as
+/// many texels as the other, or more, all the same.
 #[test]
 fn texels_follow_a_camera_that_cuts_and_stands_still() {
     let gpu = gpu();
@@ -316,8 +316,8 @@ fn texels_follow_a_camera_that_cuts_and_stands_still() {
         let mut texels = [0; 2];
         let eye = DVec3::new(1.6 * x, 5.0, 7.0);
         let camera = Camera::modern(eye, DVec3::ZERO, 0.9, 1.6).view();
-        // Sizes change by predictions, which are made every 16 frames and have to agree. The cut comes
-        // between two of them.
+        // Sizes change by predictions, which are made every 16 frames and have to agree. The cut
+        // comes between two of them.
         for _ in 0..75 {
             let frame = scene.frame(&ShadowFrameDescriptor {
                 origin: DVec3::ZERO,

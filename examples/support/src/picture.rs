@@ -1,6 +1,15 @@
 //! Writes PNG files.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// Makes the folder that the program's first argument names, or else `default`, and returns it.
+pub fn folder_from_arguments(default: &str) -> Result<PathBuf, String> {
+    let folder = std::env::args_os()
+        .nth(1)
+        .map_or(default.into(), PathBuf::from);
+    make_folder(&folder)?;
+    Ok(folder)
+}
 
 /// Makes `folder`, and those that it lies in.
 pub fn make_folder(folder: &Path) -> Result<(), String> {

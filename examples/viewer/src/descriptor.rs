@@ -55,8 +55,8 @@ impl SideSettings {
         }
     }
 
-    /// Returns the descriptor of a pool of spot lights, which take no filter of directions, and have
-    /// a quarter of the texels of the lamps.
+    /// Returns the descriptor of a pool of spot lights, which take no filter of directions, and
+    /// have a quarter of the texels of the lamps.
     pub fn spots(&self, capacity: u32) -> PoolDescriptor<'static> {
         let lamps = self.lamps(capacity);
         PoolDescriptor {

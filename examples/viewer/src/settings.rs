@@ -74,7 +74,8 @@ pub struct SideSettings {
     pub fade: f32,
     pub stability: Stability,
     pub depth_format: DepthFormat,
-    /// Is the number of texels per side of the layer that all lamps share; the spots have half of it.
+    /// Is the number of texels per side of the layer that all lamps share; the spots have half of
+    /// it.
     pub lamp_map_size: u32,
     pub lamp_filter: Filter,
 }

@@ -9,7 +9,6 @@ mod scene;
 mod shadows;
 
 use std::error::Error;
-use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use example_support::image_error::ImageError;
@@ -27,10 +26,7 @@ use crate::shadows::Shadows;
 const FRAMES: u32 = 60;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let folder = std::env::args_os()
-        .nth(1)
-        .map_or("target/guests".into(), PathBuf::from);
-    picture::make_folder(&folder)?;
+    let folder = picture::folder_from_arguments("target/guests")?;
     let gpu = Gpu::new(&GpuRequest::default())?;
     let size = [960, 540];
     let mut engine = Engine::new(&gpu, size)?;

@@ -7,7 +7,6 @@ mod panel;
 mod shadows;
 
 use std::error::Error;
-use std::path::PathBuf;
 
 use egui::{Pos2, RawInput, Rect, Sense, vec2};
 use egui_wgpu::{Callback, Renderer, RendererOptions, ScreenDescriptor};
@@ -23,10 +22,7 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 const FRAMES: u32 = 60;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let folder = std::env::args_os()
-        .nth(1)
-        .map_or("target/guests".into(), PathBuf::from);
-    picture::make_folder(&folder)?;
+    let folder = picture::folder_from_arguments("target/guests")?;
     let size = [960, 540];
     let mut window = Window::new(size)?;
     let mut pixels = Vec::new();

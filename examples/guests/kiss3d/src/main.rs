@@ -12,10 +12,10 @@ mod shadows;
 mod truth;
 
 use std::error::Error;
-use std::path::PathBuf;
 
 use example_support::image_error::ImageError;
 use example_support::keeping::{self, Frame};
+use example_support::picture;
 use glam::{DVec3, Mat4};
 use image::{GenericImage, RgbImage};
 use kiss3d::post_processing::Tonemap;
@@ -30,10 +30,7 @@ const FRAMES: u32 = 60;
 
 #[kiss3d::main]
 async fn main() {
-    let folder = std::env::args_os()
-        .nth(1)
-        .map_or("target/guests".into(), PathBuf::from);
-    std::fs::create_dir_all(&folder).expect("a folder for the picture");
+    let folder = picture::folder_from_arguments("target/guests").expect("a folder");
     let mut guest = Guest::new(960, 540).await;
     guest
         .compare(&folder.join("kiss3d.png"))
