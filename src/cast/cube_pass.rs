@@ -36,6 +36,13 @@ pub(crate) struct PreparedCubePass {
     calls: Range<usize>,
 }
 
+impl PreparedCubePass {
+    /// Returns the number of draw calls of the pass.
+    pub fn draws(&self) -> u32 {
+        self.calls.len() as u32
+    }
+}
+
 impl CubePass {
     /// Returns `None` where the device does not draw six faces at once, or not correctly.
     pub fn new(device: &wgpu::Device, label: &str) -> Result<Option<Self>, ShadowError> {
@@ -129,7 +136,7 @@ impl CubePass {
         });
         let defaults = PassDefaults {
             view_group: &self.bind_group,
-            offsets: &[],
+            offset: None,
             texels: TexelRect::whole(map.size()),
         };
         let context = DrawContext {

@@ -11,14 +11,15 @@ use crate::fit::TexelRect;
 pub(crate) struct PassDefaults<'a> {
     /// Is bind group 0: the view or views being rendered.
     pub view_group: &'a wgpu::BindGroup,
-    pub offsets: &'a [u32],
+    /// Is its dynamic offset, where it has one.
+    pub offset: Option<u32>,
     /// Is the viewport and the scissor rectangle.
     pub texels: TexelRect,
 }
 
 impl PassDefaults<'_> {
     fn set_group(&self, pass: &mut wgpu::RenderPass<'_>) {
-        pass.set_bind_group(0, self.view_group, self.offsets);
+        pass.set_bind_group(0, self.view_group, self.offset.as_slice());
     }
 
     /// Limits the pass to the rectangle of the view.

@@ -65,8 +65,9 @@ pub(crate) enum Plan {
 }
 
 impl Plan {
-    /// Returns how many depth passes the plan takes.
-    pub const fn passes(self) -> u32 {
+    /// Returns how often the plan renders the view: into the layer, and into the static-caster
+    /// cache.
+    pub const fn renders(self) -> u32 {
         match self {
             Self::Keep => 0,
             Self::All | Self::OverStaticCache => 1,
@@ -141,6 +142,11 @@ struct StaticCasterCache {
 }
 
 impl LayerCache {
+    /// Returns whether the layer holds nothing that a later frame may rely on.
+    pub fn is_empty(&self) -> bool {
+        self.placement.is_none()
+    }
+
     /// Returns whether the layer holds `view`, whatever the casters.
     pub fn is_of(&self, view: &ShadowView) -> bool {
         self.placement == Some((*view.placement(), view.texels()))

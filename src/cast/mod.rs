@@ -18,7 +18,8 @@
 //! mesh_geometry.rs       their pipeline and buffers
 //! closed.rs              which meshes are closed solids; mesh_shape.rs: which cannot shadow themselves
 //! layer_cache.rs         what a layer caches, and what a frame must draw
-//! recorder.rs            the passes; layer_pass.rs: one of them
+//! recorder.rs            the passes of a frame; layer_pass.rs: those over the layer of one view;
+//!                        shared_layer_pass.rs: those over a layer that views share
 //! shared_layer.rs        how parts of a layer are cleared and copied
 //! draw_list.rs           the draw calls of the passes, one for all instances of equal geometry
 //! instance_matrices.rs   the matrices that these draw
@@ -54,6 +55,7 @@ mod pipeline_reads;
 mod recorder;
 mod revision;
 mod shared_layer;
+mod shared_layer_pass;
 mod view_uniform;
 
 pub use caster::ShadowCaster;

@@ -1,12 +1,12 @@
 //! Determines which views need drawing this frame, and records the passes that draw them.
 
 use crate::cast::cube_pass::{CubePass, PreparedCubePass};
-use crate::cast::draw_casters::DrawContext;
 use crate::cast::draw_list::DrawLists;
 use crate::cast::instance_matrices::InstanceMatrices;
 use crate::cast::layer_cache::{LayerCache, Plan, ViewDraws};
-use crate::cast::layer_pass::{Before, LayerPass};
+use crate::cast::layer_pass::{Layer, PassFrame, record_layer};
 use crate::cast::shared_layer::SharedLayer;
+use crate::cast::shared_layer_pass::record_shared_layer;
 use crate::cast::view_uniform::{CasterViewUniform, VIEW_UNIFORM_BYTES, view_layout};
 use crate::cast::{CasterPipeline, FrameCasters};
 use crate::error::DeviceError;
@@ -16,6 +16,7 @@ use crate::{ShadowError, ShadowView};
 /// Draws views into the layers of a depth map, and tracks what each layer caches.
 #[derive(Debug)]
 pub(crate) struct Recorder {
+    label: String,
     uniforms: UploadBuffer,
     bytes: Vec<u8>,
     stride: u64,
@@ -33,17 +34,6 @@ pub(crate) struct Recorder {
     cube: Option<CubePass>,
 }
 
-#[derive(Debug)]
-struct Layer {
-    label: String,
-    cache: LayerCache,
-    /// Is the static-caster cache, a texture of one layer; `None` before its first use, and where
-    /// views share a layer, which has one for all.
-    static_cache: Option<DepthMap>,
-    /// States that the device could not make one.
-    static_cache_failed: bool,
-}
-
 /// Tells how the views of a recorder lie in its map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum RecorderKind {
@@ -53,6 +43,13 @@ pub(crate) enum RecorderKind {
     Cube,
     /// The views are rectangles of one layer of this format.
     SharedLayer(DepthFormat),
+}
+
+/// Counts what a frame recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Recorded {
+    pub passes: u32,
+    pub draws: u32,
 }
 
 /// Holds everything that could fail, made before the encoder is touched.
@@ -102,13 +99,9 @@ impl Recorder {
             RecorderKind::SharedLayer(format) => Some(SharedLayer::new(device, label, format)?),
             RecorderKind::Layers | RecorderKind::Cube => None,
         };
-        let layers = (0..views).map(|view| Layer {
-            label: format!("{label} layer {view}"),
-            cache: LayerCache::default(),
-            static_cache: None,
-            static_cache_failed: false,
-        });
+        let layers = (0..views).map(|view| Layer::new(format!("{label} view {view}")));
         Ok(Self {
+            label: label.into(),
             uniforms,
             bytes: Vec::new(),
             stride,
@@ -126,10 +119,10 @@ impl Recorder {
         })
     }
 
-    /// Returns how many depth passes `draws` needs.
-    pub fn passes(&self, draws: &ViewDraws, casters: &FrameCasters<'_>) -> u32 {
+    /// Returns how often `draws` needs its view rendered.
+    pub fn renders(&self, draws: &ViewDraws, casters: &FrameCasters<'_>) -> u32 {
         let layer = &self.layers[draws.view.index() as usize];
-        layer.cache.plan(draws, casters, self.can_copy).passes()
+        layer.cache.plan(draws, casters, self.can_copy).renders()
     }
 
     /// Returns whether the layer of `view` holds that view, whatever its casters.
@@ -269,7 +262,7 @@ impl Recorder {
         Ok(None)
     }
 
-    /// Records what was planned, after the uploads, and returns the number of passes.
+    /// Records what was planned, after the uploads, and returns what that was.
     ///
     /// The state of a layer is reset before anything is drawn into it and set again when its pass
     /// is complete: a caster that panics leaves a layer behind that the next frame draws again.
@@ -280,7 +273,7 @@ impl Recorder {
         prepared: PreparedViews<'_>,
         views: &mut [ViewDraws],
         casters: &FrameCasters<'_>,
-    ) -> u32 {
+    ) -> Recorded {
         let PreparedViews {
             cube: prepared_cube,
             lists,
@@ -293,73 +286,48 @@ impl Recorder {
                 caches[draws.view.index() as usize].replace(draws, casters);
             }
             let frame = (casters, &self.matrices);
+            let draws = prepared.draws();
             cube.record(encoder, map, prepared, views, &lists, frame);
             self.lists = lists.recycled();
             for draws in views.iter() {
                 let index = draws.view.index() as usize;
                 self.layers[index].cache = std::mem::take(&mut caches[index]);
             }
-            return 1;
+            return Recorded { passes: 1, draws };
         }
         self.uniforms.set_written(&self.bytes);
-        let mut passes = 0;
-        for draws in views {
-            if draws.plan == Plan::Keep {
-                let layer = &mut self.layers[draws.view.index() as usize];
-                layer.cache.keep(draws, casters);
-                continue;
-            }
-            let index = draws.view.index();
-            let layer = &mut self.layers[index as usize];
-            let mut cache = layer.take_cache();
-            cache.replace(draws, casters);
-            let mut pass = LayerPass {
-                encoder,
-                label: &layer.label,
-                view_group: (&self.bind_group, (self.stride * u64::from(index)) as u32),
-                format: map.format(),
-                shared_layer: self.shared_layer.as_ref(),
-                context: DrawContext {
-                    casters,
-                    matrices: &self.matrices,
-                    view: &draws.view,
-                },
-            };
-            let calls = lists.calls(draws.calls.clone());
-            let target = map.layer_view(draws.view.layer());
-            passes += draws.plan.passes();
-            let static_cache = match &self.shared_layer {
-                Some(shared) => shared.static_cache(),
-                None => layer.static_cache.as_ref(),
-            };
-            match static_cache {
-                Some(static_cache) if draws.plan != Plan::All => {
-                    if draws.plan == Plan::RenewStaticCache {
-                        let calls = lists.calls(draws.static_calls.clone());
-                        pass.draw(static_cache.layer_view(0), Before::Clear, calls);
-                    } else {
-                        let drawn = draws.casters.iter();
-                        let facts = drawn.map(|&caster| casters.facts(caster));
-                        for facts in facts.filter(|facts| cache.is_static(facts.revision)) {
-                            draws.copied += 1;
-                            draws.copied_triangles += u64::from(facts.triangles);
-                        }
-                    }
-                    if self.shared_layer.is_none() {
-                        pass.encoder.copy_texture_to_texture(
-                            static_cache.layer_copy(0),
-                            map.layer_copy(draws.view.layer()),
-                            map.layer_extent(),
-                        );
-                    }
-                    pass.draw(target, Before::StaticCasters, calls);
-                }
-                _ => pass.draw(target, Before::Clear, calls),
-            }
-            layer.cache = cache;
+        let frame = PassFrame {
+            casters,
+            matrices: &self.matrices,
+            lists: &lists,
+            view_group: &self.bind_group,
+            stride: self.stride as u32,
+            format: map.format(),
+        };
+        for draws in views.iter().filter(|draws| draws.plan == Plan::Keep) {
+            let layer = &mut self.layers[draws.view.index() as usize];
+            layer.cache.keep(draws, casters);
         }
+        let drawn = views.iter_mut().filter(|draws| draws.plan != Plan::Keep);
+        let passes = match &self.shared_layer {
+            Some(shared) => {
+                let drawn = drawn.collect();
+                let shared = (shared, self.label.as_str());
+                record_shared_layer(encoder, map, shared, &mut self.layers, drawn, &frame)
+            }
+            None => drawn
+                .map(|draws| {
+                    let layer = &mut self.layers[draws.view.index() as usize];
+                    record_layer(encoder, map, layer, draws, &frame)
+                })
+                .sum(),
+        };
         self.lists = lists.recycled();
-        passes
+        let draws = views.iter().map(ViewDraws::draw_calls);
+        Recorded {
+            passes,
+            draws: draws.fold(0, u32::saturating_add),
+        }
     }
 
     /// Resets the state of all layers, so that every view is drawn again.
@@ -371,25 +339,5 @@ impl Recorder {
         if let Some(cube) = &mut self.cube {
             cube.invalidate();
         }
-    }
-}
-
-impl Layer {
-    /// Takes the state of the layer and leaves an empty one, under which no depths in the layer are
-    /// relied on.
-    fn take_cache(&mut self) -> LayerCache {
-        std::mem::take(&mut self.cache)
-    }
-
-    /// Makes the static-caster cache of the layer if it has none. Returns false where the device
-    /// could not make one; all casters are then drawn.
-    fn make_static_cache(&mut self, device: &wgpu::Device, map: &DepthMap) -> bool {
-        if self.static_cache.is_none() && !self.static_cache_failed {
-            let label = format!("{} static casters", self.label);
-            self.static_cache =
-                DepthMap::new(device, &label, "map_size", map.size(), 1, map.format()).ok();
-            self.static_cache_failed = self.static_cache.is_none();
-        }
-        self.static_cache.is_some()
     }
 }

@@ -7,13 +7,12 @@
 
 use glam::{DVec2, DVec3, UVec2};
 
-use crate::Aabb;
-use crate::fit::axes::{LightAxes, LightSpace};
 use crate::fit::change_log::ChangedBoxes;
 use crate::fit::local_input::{LocalInput, MAX_LOCAL_VIEWS};
+use crate::fit::local_view::ViewFrame;
 use crate::fit::map_rect::{HeldRect, MapRect, MapRectRequest};
 use crate::fit::reached::{self, FarthestSeen, Reached};
-use crate::fit::region::{HalfSpace, HalfSpaces, Relation};
+use crate::fit::region::HalfSpaces;
 use crate::fit::size_step::HeldSize;
 
 /// Holds the map rectangles and near planes of a local light, kept from frame to frame for their
@@ -49,12 +48,6 @@ struct LocalRequests {
     range: f64,
     /// Holds the request for each of the rectangles, with the distance of a near plane.
     views: [Option<(MapRectRequest, f64)>; MAX_LOCAL_VIEWS],
-}
-
-/// Is a rectangle of tangents.
-struct Extent {
-    min: DVec2,
-    max: DVec2,
 }
 
 impl LocalFit {
@@ -104,10 +97,14 @@ impl LocalFit {
             let rect = held_rect.rect;
             let region = view.region(rect.min, rect.max(), nearest);
             let (mut near, mut caster_reach) = (f64::INFINITY, 0.0_f64);
-            for caster in &reached.casters {
-                if let Some(distance) = view.nearest_within(&region, &caster.bounds) {
+            for caster in reached.candidates() {
+                // From there on the power of two below the distance is no less than the near plane.
+                let enough = power_of_two_above(near);
+                if let Some(distance) = view.nearest_within(&region, &caster.bounds, enough) {
                     drawn[index].push(caster.index);
-                    near = near.min(near_plane(distance, caster.nearest));
+                    if distance < enough {
+                        near = near.min(near_plane(distance, caster.nearest));
+                    }
                     caster_reach = caster_reach.max(caster.farthest_corner);
                 }
             }
@@ -201,7 +198,19 @@ fn cone(input: &LocalInput<'_>, light: DVec3) -> HalfSpaces {
 /// resolved below `nearest`. The distance is rounded down to a power of two, so that it changes
 /// rarely.
 fn near_plane(distance: f64, nearest: f64) -> f64 {
-    distance.max(nearest).log2().floor().exp2().max(nearest)
+    power_of_two_below(distance.max(nearest)).max(nearest)
+}
+
+/// Returns the largest power of two that is at most `value`, which is positive and at least
+/// 2⁻¹⁰²²: the number without its mantissa.
+fn power_of_two_below(value: f64) -> f64 {
+    f64::from_bits(value.to_bits() & f64::INFINITY.to_bits())
+}
+
+/// Returns the least power of two that is at least `value`.
+fn power_of_two_above(value: f64) -> f64 {
+    let below = power_of_two_below(value);
+    if below < value { 2.0 * below } else { below }
 }
 
 /// Returns the near plane to use for `near` where `held` is in use: a caster that comes and goes
@@ -211,168 +220,6 @@ fn steady_near(near: f64, held: f64) -> f64 {
         held
     } else {
         near
-    }
-}
-
-/// Holds one view's axes at the light's position in render space.
-struct ViewFrame<'a> {
-    axes: &'a LightAxes,
-    light: DVec3,
-}
-
-impl ViewFrame<'_> {
-    /// Returns the rectangle of tangents that both casters and receivers cover, or `None` if they
-    /// share none. Where lookups reach around their receiver, casters alone decide.
-    fn needed(
-        &self,
-        input: &LocalInput<'_>,
-        index: usize,
-        reached: &Reached,
-        nearest: f64,
-    ) -> Option<(DVec2, DVec2)> {
-        let square =
-            |tangent: f64| self.region(DVec2::splat(-tangent), DVec2::splat(tangent), nearest);
-        let casters = reached.casters.iter().map(|caster| &caster.bounds);
-        let cast = self.extent(&square(input.caster_tangents[index]), casters)?;
-        if input.looks_around {
-            return Some((cast.min, cast.max));
-        }
-        let mut received = Extent::NOTHING;
-        for region in input.seen {
-            let mut seen = square(input.receiver_tangent);
-            let planes = region.as_slice().iter();
-            planes.for_each(|plane| seen.push(*plane));
-            if let Some(extent) = self.extent(&seen, reached.receivers.iter()) {
-                received.min = received.min.min(extent.min);
-                received.max = received.max.max(extent.max);
-            }
-        }
-        let (min, max) = (cast.min.max(received.min), cast.max.min(received.max));
-        min.cmple(max).all().then_some((min, max))
-    }
-
-    /// Returns the pyramid over a rectangle of tangents, cut off at `nearest` along the axis.
-    fn region(&self, min: DVec2, max: DVec2, nearest: f64) -> HalfSpaces {
-        let (right, up, forward) = (self.axes.right(), self.axes.up(), -self.axes.toward_light());
-        let mut region = HalfSpaces::default();
-        // The near side comes first: it rejects half of all boxes.
-        region.push(HalfSpace {
-            normal: forward,
-            offset: -forward.dot(self.light) - nearest,
-        });
-        for side in [
-            right - forward * min.x,
-            forward * max.x - right,
-            up - forward * min.y,
-            forward * max.y - up,
-        ] {
-            let normal = side.normalize();
-            region.push(HalfSpace {
-                normal,
-                offset: -normal.dot(self.light),
-            });
-        }
-        region
-    }
-
-    /// Returns the rectangle of tangents that the boxes cover within the region, or `None` where no
-    /// box is in it.
-    fn extent<'b>(
-        &self,
-        region: &HalfSpaces,
-        boxes: impl Iterator<Item = &'b Aabb>,
-    ) -> Option<Extent> {
-        let mut extent = Extent::NOTHING;
-        for bounds in boxes {
-            if region.relation(bounds) == Relation::Outside || extent.holds(&self.span(bounds)) {
-                continue;
-            }
-            region.visit_vertices(bounds, |vertex| {
-                let local = self.axes.light_from_world * (vertex - self.light);
-                let tangents = local.truncate() / -local.z;
-                extent.min = extent.min.min(tangents);
-                extent.max = extent.max.max(tangents);
-            });
-        }
-        extent.min.cmple(extent.max).all().then_some(extent)
-    }
-
-    /// Returns the least distance along the axis of the part of a box within the region, or `None`
-    /// where no part is.
-    fn nearest_within(&self, region: &HalfSpaces, bounds: &Aabb) -> Option<f64> {
-        match region.relation(bounds) {
-            Relation::Outside => None,
-            Relation::Inside => Some(self.span(bounds).nearest),
-            Relation::Across => {
-                let mut nearest = f64::INFINITY;
-                region.visit_vertices(bounds, |vertex| {
-                    let distance = self.axes.toward_light().dot(self.light - vertex);
-                    nearest = nearest.min(distance);
-                });
-                (nearest < f64::INFINITY).then_some(nearest)
-            }
-        }
-    }
-
-    /// Returns the box's intervals on the view's axes, measured from the light.
-    fn span(&self, bounds: &Aabb) -> Span {
-        let around_light = LightSpace {
-            axes: *self.axes,
-            origin: -self.light,
-        };
-        let local = around_light.bounds(bounds);
-        Span {
-            min: local.min.truncate(),
-            max: local.max.truncate(),
-            nearest: -local.max.z,
-            farthest: -local.min.z,
-            coordinate: {
-                let corners = bounds.min.abs().max(bounds.max.abs()).max_element();
-                f64::from(corners) + self.light.abs().max_element()
-            },
-        }
-    }
-}
-
-/// Holds a box's intervals across the view, and along it away from the light.
-struct Span {
-    min: DVec2,
-    max: DVec2,
-    nearest: f64,
-    farthest: f64,
-    /// Is the largest render coordinate that they are computed from.
-    coordinate: f64,
-}
-
-impl Span {
-    /// Returns more than tangents of points in the box may be off: so it does not matter which of
-    /// several equal ones is found first.
-    fn rounding(&self) -> f64 {
-        let widest = self.min.abs().max(self.max.abs()).max_element() / self.nearest;
-        64.0 * f64::EPSILON * (1.0 + widest) * (self.coordinate / self.nearest)
-    }
-}
-
-impl Extent {
-    const NOTHING: Self = Self {
-        min: DVec2::INFINITY,
-        max: DVec2::NEG_INFINITY,
-    };
-
-    /// Returns whether all tangents of the box are within these already.
-    fn holds(&self, span: &Span) -> bool {
-        let at = |across: DVec2| (across / span.nearest, across / span.farthest);
-        let (low_near, low_far) = at(span.min);
-        let (high_near, high_far) = at(span.max);
-        span.nearest > 0.0
-            && self
-                .min
-                .cmple(low_near.min(low_far) - span.rounding())
-                .all()
-            && self
-                .max
-                .cmpge(high_near.max(high_far) + span.rounding())
-                .all()
     }
 }
 

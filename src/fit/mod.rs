@@ -30,9 +30,10 @@
 //!                 predicted_error.rs: how; layout_pack.rs: the rectangles of a layer;
 //!                 point_grid.rs: points in a rectangle
 //! directional.rs  the complete fit of a directional light; directional_input.rs: its input
-//! reached.rs      what a local light reaches
+//! reached.rs      what a local light reaches; box_arrays.rs: many boxes compared at once
 //! nearest.rs      how near to a local light its near planes may be
-//! local.rs        the complete fit of a spot or point light's views; local_input.rs: its input
+//! local.rs        the complete fit of a spot or point light's views; local_input.rs: its input;
+//!                 local_view.rs: one view
 //! local_need.rs   how many texels the views of local lights need
 //! square_sizes.rs  the sizes of the squares of a layer that views share; square_packing.rs: where
 //!                 they lie
@@ -43,6 +44,7 @@
 
 mod axes;
 mod bounds_tree;
+mod box_arrays;
 mod boxes;
 mod camera;
 mod camera_rays;
@@ -66,6 +68,7 @@ mod layout_samples;
 mod local;
 mod local_input;
 mod local_need;
+mod local_view;
 mod map_rect;
 mod nearest;
 mod point_grid;

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::Aabb;
+use crate::fit::box_arrays::BoxArrays;
 use crate::fit::change_log::ChangedBox;
 use crate::fit::local_input::LocalInput;
 use crate::fit::nearest::nearest_for;
@@ -15,7 +16,13 @@ pub(crate) struct Reached {
     /// Holds the casters that can shadow something.
     pub casters: Vec<ReachedCaster>,
     /// Holds the parts of the receivers that the light reaches.
-    pub receivers: Vec<Aabb>,
+    receivers: Vec<Aabb>,
+    /// Holds the boxes of the two lists, relative to the light.
+    caster_boxes: BoxArrays,
+    receiver_boxes: BoxArrays,
+    /// Holds the numbers, in the list, of casters that may be in a view, and of receivers.
+    candidates: Vec<u32>,
+    receivers_found: Vec<u32>,
 }
 
 /// Is a caster that a light reaches.
@@ -89,6 +96,38 @@ impl Reached {
             |_, around| touches(around),
             |casters, index, bounds| casters.extend(reached_caster((index, bounds))),
         );
+        self.caster_boxes.clear();
+        for caster in &self.casters {
+            self.caster_boxes.push(&caster.bounds, light);
+        }
+        self.receiver_boxes.clear();
+        for bounds in &self.receivers {
+            self.receiver_boxes.push(bounds, light);
+        }
+    }
+
+    /// Finds the casters that may be in a region.
+    pub fn find_candidates(&mut self, region: &HalfSpaces, light: DVec3) {
+        let found = &mut self.candidates;
+        self.caster_boxes.find_in(region, light, found);
+    }
+
+    /// Returns the casters that were found last.
+    pub fn candidates(&self) -> impl Iterator<Item = &ReachedCaster> + Clone {
+        let found = self.candidates.iter();
+        found.map(|&number| &self.casters[number as usize])
+    }
+
+    /// Returns the receivers that may be in a region.
+    pub fn receivers_in(
+        &mut self,
+        region: &HalfSpaces,
+        light: DVec3,
+    ) -> impl Iterator<Item = &Aabb> + Clone {
+        let found = &mut self.receivers_found;
+        self.receiver_boxes.find_in(region, light, found);
+        let receivers = &self.receivers;
+        found.iter().map(|&number| &receivers[number as usize])
     }
 
     /// Returns the least distance from the light at which a near plane of these casters can be.

@@ -166,6 +166,13 @@ impl HalfSpaces {
         relation
     }
 
+    /// Returns whether a point is in the region.
+    pub fn holds(&self, point: DVec3) -> bool {
+        self.as_slice()
+            .iter()
+            .all(|plane| plane.distance(point) >= 0.0)
+    }
+
     /// Returns whether the region surely has nothing of `around`, nor of any box in it as
     /// [`relation`](Self::relation) judges that one, whatever the rounding.
     pub fn surely_misses(&self, around: &Aabb) -> bool {

@@ -57,7 +57,7 @@ pub(super) struct Candidate {
     pub draws: [Option<ViewDraws>; MAX_LOCAL_VIEWS],
     /// Holds the views of `draws`.
     pub views: [Option<ShadowView>; MAX_LOCAL_VIEWS],
-    /// Counts the depth passes that its views need.
+    /// Counts how often its views need to be rendered.
     pub needed: u32,
     pub refreshed: bool,
     /// Has a bit for each view for which there is no room in the layer.
@@ -156,7 +156,7 @@ impl LocalLights {
     }
 
     /// Fits and culls `lights`, uploads their uniforms and records their depth passes. `max_views`
-    /// is the largest number of depth passes to record; `None` sets no limit.
+    /// is the largest number of views to render; `None` sets no limit.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,

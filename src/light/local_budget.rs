@@ -1,4 +1,4 @@
-//! Selects the lights that are refreshed under a budget of depth passes.
+//! Selects the lights that are refreshed under a budget of views.
 
 use crate::light::local::{Candidate, LocalLights, LocalPlacement};
 
@@ -7,11 +7,11 @@ use crate::light::local::{Candidate, LocalLights, LocalPlacement};
 const LEAST_SHARE_OF_IMPORTANCE: f64 = 1.0 / 4096.0;
 
 impl LocalLights {
-    /// Selects the lights to refresh within a budget of `max_views` depth passes. Lights that need
-    /// a refresh are taken in descending order of urgency, which is the importance times (1 + the
-    /// number of frames waited), so that no light of importance above 0 waits for ever. The first
-    /// is always refreshed, however small the budget; each further one is refreshed if its passes
-    /// fit into the rest. Returns the number of passes of those that are refreshed.
+    /// Selects the lights to refresh within a budget of `max_views` rendered views. Lights that
+    /// need a refresh are taken in descending order of urgency, which is the importance times (1 +
+    /// the number of frames waited), so that no light of importance above 0 waits for ever. The
+    /// first is always refreshed, however small the budget; each further one is refreshed if its
+    /// views fit into the rest. Returns how many views those that are refreshed render.
     ///
     /// The products neither overflow nor underflow in f64: a finite f32 times 2³² is far below the
     /// largest f64. An importance above 0 counts for no less than [`LEAST_SHARE_OF_IMPORTANCE`] of

@@ -95,7 +95,7 @@ impl LocalLights {
                 view = view.in_shared_layer(texels, layer.map_size());
             }
             let view_draws = ViewDraws::new(view, drawn);
-            needed += maps.passes(&view_draws, &frame.casters);
+            needed += maps.renders(&view_draws, &frame.casters);
             draws[index] = Some(view_draws);
             views[index] = Some(view);
         }

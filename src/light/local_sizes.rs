@@ -82,7 +82,7 @@ impl LocalLights {
     }
 
     /// Gives the views of refreshed lights their texels, and returns the views that have lost
-    /// theirs. `spare` is the number of depth passes that are left for views that have to move.
+    /// theirs. `spare` is the number of views that may still be rendered because they have to move.
     pub(super) fn place(
         &mut self,
         frame: &ShadowFrame<'_>,

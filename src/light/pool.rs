@@ -237,14 +237,15 @@ macro_rules! pool {
             }
 
             /// Fits the lights to the frame, culls the casters, writes the uniforms, and records
-            /// the depth passes that are needed and that the budget allows. A light in which
-            /// nothing changed takes no pass. Lights of the pool that are not listed cast no shadow
+            /// the depth pass that is needed, of the views that the budget allows. A light in
+            /// which nothing changed is not drawn. Lights of the pool that are not listed cast no shadow
             /// in this frame: every surface is lit.
             ///
-            /// `max_views` is the budget: the largest number of depth passes to record in this
-            /// frame, or `None` for no limit. A view takes one pass, or two where its static-caster
-            /// cache is drawn as well. A view whose size changes takes one, and a view that has to
-            /// make room for another takes one. The most important lights are refreshed first, and
+            /// `max_views` is the budget: the largest number of views to render in this frame, or
+            /// `None` for no limit. A view counts twice where its static-caster cache is rendered
+            /// as well. A view whose size changes counts, and so does a view that has to make room
+            /// for another. One depth pass renders all of them, and a second one renders the
+            /// static-caster caches. The most important lights are refreshed first, and
             /// at least one is, whatever it costs. The others keep their last map and are reported
             /// as [`Deferred`](crate::report::ViewStatus::Deferred). A light that has never been
             /// drawn, or not since `invalidate`, is lit everywhere until it is refreshed.

@@ -182,9 +182,9 @@ impl PoolLayer {
     }
 
     /// Gives each view of a refreshed light the texels that it is to have, with at most
-    /// `most_moved` depth passes for others that have to move; `None` sets no limit. The views of
-    /// lights that are not refreshed keep what they have. Where there is no room, a view keeps its
-    /// present size, or gets a smaller one than it is to have.
+    /// `most_moved` others that have to move and be rendered again; `None` sets no limit. The views
+    /// of lights that are not refreshed keep what they have. Where there is no room, a view keeps
+    /// its present size, or gets a smaller one than it is to have.
     ///
     /// Without a limit there is always room: squares are taken from the largest to the smallest.
     pub fn place(&mut self, requests: &[Request], most_moved: Option<u32>) -> Placed {

@@ -286,9 +286,10 @@ impl ShadowMaps {
         staged.commit(encoder, &uploads);
         self.uniforms.set_written(uniform_bytes);
         self.memory.uniforms = std::mem::replace(&mut self.uniform_values, uniform_values);
-        self.report.passes = self
+        let recorded = self
             .recorder
             .record(encoder, &self.map, prepared, &mut views, &casters);
+        (self.report.passes, self.report.draws) = (recorded.passes, recorded.draws);
         let mut old_views = std::mem::replace(&mut self.views, views);
         let lists = old_views.drain(..).map(|draws| draws.casters);
         self.memory.casters.extend(lists);
@@ -378,9 +379,9 @@ impl ShadowMaps {
         self.report.note_frame(casters);
     }
 
-    /// Returns how many depth passes `draws` needs.
-    pub(crate) fn passes(&self, draws: &ViewDraws, casters: &FrameCasters<'_>) -> u32 {
-        self.recorder.passes(draws, casters)
+    /// Returns how often `draws` needs its view rendered.
+    pub(crate) fn renders(&self, draws: &ViewDraws, casters: &FrameCasters<'_>) -> u32 {
+        self.recorder.renders(draws, casters)
     }
 
     /// Returns whether the layer of `view` still contains what was last drawn for that view.

@@ -86,7 +86,7 @@ impl Row {
                 status => panic!("{status:?}"),
             }
         }
-        assert_eq!(report.passes as usize, drawn.len());
+        assert_eq!(report.passes, u32::from(!drawn.is_empty()));
         drawn
     }
 
@@ -277,9 +277,9 @@ fn waiting_costs_no_memory() {
     assert!(lengths[2] < lengths[0] + 400, "{lengths:?}");
 }
 
-/// Drawing the static-caster cache of a view takes a pass of its own, which counts like any other.
+/// A view whose static-caster cache is drawn as well counts twice.
 #[test]
-fn no_frame_draws_more_passes_than_the_budget() {
+fn no_frame_draws_more_views_than_the_budget() {
     let gpu = gpu();
     let pipeline = default_pipeline(gpu);
     let mut pool = pool(4, 512).expect("a valid pool");
@@ -303,7 +303,7 @@ fn no_frame_draws_more_passes_than_the_budget() {
         Mat4::IDENTITY,
     );
     let floor = Aabb::new(Vec3::new(-1.5, -0.1, -1.5), Vec3::new(1.5, 0.0, 1.5));
-    let mut copied = 0;
+    let (mut copied, mut renewed) = (0, 0);
     for step in 0..120 {
         let shift = Vec3::Z * 0.002 * step as f32;
         mover
@@ -317,8 +317,15 @@ fn no_frame_draws_more_passes_than_the_budget() {
             ..frame(&lights, &casters)
         };
         let report = record(gpu, &mut pool, &frame).expect("a valid frame");
-        assert!(report.passes <= 2, "{} passes in {step}", report.passes);
+        let drawn = report.views.iter();
+        let drawn = drawn.filter(|view| view.status == ViewStatus::Drawn);
+        let drawn = drawn.count() as u32;
+        // The second pass is that over the static-caster caches, of one view at least.
+        let rendered = drawn + report.passes.saturating_sub(1);
+        assert!(rendered <= 2, "{rendered} views in {step}");
+        renewed += u32::from(report.passes == 2);
         copied += report.views.iter().map(|view| view.copied).sum::<u32>();
     }
+    assert!(renewed > 0, "static casters are cached");
     assert!(copied > 0, "static casters are copied");
 }
