@@ -164,12 +164,23 @@ impl Untidy {
             // The margin is three texels, stretched by the slant of the light.
             let margin = 3.0 * texel / -self.light.y + 0.005;
             let here = dark(position);
-            let around = (0..12).map(|step| {
-                let angle = f64::from(step) * std::f64::consts::TAU / 12.0;
-                position + DVec3::new(angle.cos(), 0.0, angle.sin()) * margin
-            });
-            let mut around = around.flat_map(|place| [place, place + DVec3::Y * gap]);
-            let settled = around.all(|place| dark(place) == here);
+            let settled = if here {
+                let around = (0..12).map(|step| {
+                    let angle = f64::from(step) * std::f64::consts::TAU / 12.0;
+                    position + DVec3::new(angle.cos(), 0.0, angle.sin()) * margin
+                });
+                let mut around = around.flat_map(|place| [place, place + DVec3::Y * gap]);
+                around.all(dark)
+            } else {
+                // A thin shadow close by may lie between any places around. A ray that passes a box
+                // at no more than the margin meets the box that is wider by as much.
+                let wider = Vec3::splat(margin as f32);
+                let mut boxes = self.boxes.iter().map(|(corner, size)| {
+                    let mesh = Mesh::cuboid(*corner - wider, *corner + *size + wider);
+                    mesh.triangles(&Mat4::IDENTITY)
+                });
+                !boxes.any(|triangles| occluded(&triangles, position, -light, 0.0))
+            };
             points.push(Point::rounded(position, DVec3::Y));
             truths.push(settled.then_some(here));
         }
