@@ -265,7 +265,7 @@
 //! bindings. So may the last digits of a visibility.
 
 #![cfg_attr(doc, doc = include_str!("../doc/pictures.md"))]
-#![warn(missing_docs)]
+#![warn(missing_docs, unreachable_pub)]
 #![forbid(unsafe_code)]
 
 mod aabb;

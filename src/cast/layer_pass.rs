@@ -29,7 +29,12 @@ pub(crate) struct LayerPass<'a, 'c> {
 
 impl LayerPass<'_, '_> {
     /// Records a pass that makes `calls`.
-    pub fn draw(&mut self, target: &wgpu::TextureView, before: Before, calls: &[DrawCall<'_>]) {
+    pub(super) fn draw(
+        &mut self,
+        target: &wgpu::TextureView,
+        before: Before,
+        calls: &[DrawCall<'_>],
+    ) {
         // A shared layer keeps the texels of its other views.
         let load = match (self.shared_layer, before) {
             (None, Before::Clear) => CLEAR,

@@ -62,7 +62,7 @@ impl Reach {
 
 impl Reached {
     /// Fills the lists from `input`, for a light at `light` in render space.
-    pub fn find(&mut self, input: &LocalInput<'_>, light: DVec3, reach: f64) {
+    pub(crate) fn find(&mut self, input: &LocalInput<'_>, light: DVec3, reach: f64) {
         let within = Reach::new(light, reach);
         let near = |bounds: &Aabb| within.part(bounds);
         self.casters.clear();
@@ -92,7 +92,7 @@ impl Reached {
     }
 
     /// Returns the least distance from the light at which a near plane of these casters can be.
-    pub fn nearest(&self) -> f64 {
+    pub(crate) fn nearest(&self) -> f64 {
         let each = self.casters.iter().map(|caster| caster.nearest);
         each.fold(f64::INFINITY, f64::min)
     }
