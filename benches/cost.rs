@@ -14,7 +14,7 @@ use shadow_support::clock::Clock;
 use shadow_support::gpu::{Gpu, GpuRequest};
 
 use growth::stage::Stage;
-use growth::{copies, cpu, device, faces, motion, retained};
+use growth::{card, copies, cpu, device, faces, motion, retained};
 
 mod growth;
 
@@ -34,6 +34,9 @@ struct Arguments {
     /// map-sizes, taps, moving-share, static-cache, bare-minimum, copies, yard or faces.
     #[arg(long)]
     only: Option<String>,
+    /// Measures for about a minute, and prints the row of this machine for doc/measured_on.md alone.
+    #[arg(long)]
+    card: bool,
     /// Is passed by `cargo bench`.
     #[arg(long, hide = true)]
     bench: bool,
@@ -41,13 +44,26 @@ struct Arguments {
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    let gpu = match Gpu::new(&GpuRequest::measuring()) {
+    let mut request = GpuRequest::measuring();
+    request.backends = match wgpu::Backends::from_env() {
+        Some(backends) => vec![backends],
+        None => request.backends,
+    };
+    let gpu = match Gpu::new(&request) {
         Ok(gpu) => gpu,
         Err(error) => {
             eprintln!("cost: {error}");
             return ExitCode::FAILURE;
         }
     };
+    if arguments.card {
+        card::row(&Stage {
+            clock: Clock::new(&gpu),
+            gpu: &gpu,
+            repeats: arguments.repeats.max(1),
+        });
+        return ExitCode::SUCCESS;
+    }
     println!("{}", gpu.describe());
     if gpu.is_software() {
         println!("A software rasteriser: device times are ratios of work done on the CPU.");

@@ -2,6 +2,8 @@
 //! camera and what casts shadows, and gets depth maps, a bind group, and WGSL functions that return
 //! visibility with a bias that needs no tuning.
 //!
+//! ![Three cubes and their shadows][picture-quickstart]
+//!
 //! The crate creates no device, submits nothing, and does not shade. It requires no optional device
 //! feature.
 //!
@@ -174,12 +176,12 @@
 //! the render coordinates from which it was drawn, and the bias allows for that rounding. The map
 //! is drawn again where the rounding exceeds both twice that of a new map and 1/64 of a texel.
 //!
-//! [`engines`] tells how engines of different shapes take the library in: those that give hooks
-//! only, that keep objects in a hash map, whose buffers grow, that draw mirrors, that shade in
-//! compute shaders. [`troubleshooting`] tells what faults look like, what causes them and what to
-//! do. [`hard_cases`] lists scenes and inputs that break shadow maps, with what the crate promises
-//! for each and what was measured. [`glossary`] explains the terms of the field, with formulas and
-//! sources.
+//! [`choosing`] helps to choose a light, a filter and a budget. [`engines`] tells how engines of
+//! different shapes take the library in: those that give hooks only, that keep objects in a hash
+//! map, whose buffers grow, that draw mirrors, that shade in compute shaders. [`troubleshooting`]
+//! tells what faults look like, what causes them and what to do. [`hard_cases`] lists scenes and
+//! inputs that break shadow maps, with what the crate promises for each and what was measured.
+//! [`glossary`] explains the terms of the field, with formulas and sources.
 //!
 //! # Own bind groups
 //!
@@ -262,7 +264,8 @@
 //! other names, other members, the size and the layout of [`ShadowViewUniform`], and the numbers of
 //! bindings. So may the last digits of a visibility.
 
-#![warn(missing_docs)]
+#![cfg_attr(doc, doc = include_str!("../doc/pictures.md"))]
+#![warn(missing_docs, unreachable_pub)]
 #![forbid(unsafe_code)]
 
 mod aabb;
@@ -319,6 +322,10 @@ pub mod report {
 }
 
 #[cfg(doc)]
+#[doc = include_str!("../doc/choosing.md")]
+pub mod choosing {}
+
+#[cfg(doc)]
 #[doc = include_str!("../doc/engines.md")]
 pub mod engines {}
 
@@ -328,6 +335,7 @@ pub mod hard_cases {}
 
 #[cfg(doc)]
 #[doc = include_str!("../doc/troubleshooting.md")]
+#[doc = include_str!("../doc/pictures.md")]
 pub mod troubleshooting {}
 
 #[cfg(doc)]

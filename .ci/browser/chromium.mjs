@@ -11,9 +11,10 @@ const FLAGS = [
   '--use-vulkan=swiftshader',
   '--use-angle=swiftshader',
   '--enable-unsafe-swiftshader',
-  // Chromium refuses its sandbox to root, which containers run as.
-  ...(process.getuid() === 0 ? ['--no-sandbox'] : []),
 ];
+
+// Chromium refuses its sandbox to root, which containers run as.
+const OF_ROOT = process.getuid() === 0 ? ['--no-sandbox'] : [];
 
 function answerEmpty(_, response) {
   response.setHeader('content-type', 'text/html');
@@ -21,13 +22,13 @@ function answerEmpty(_, response) {
 }
 
 // Calls `body(page, problems)` at `page.base`, which `answer(request, response)` serves. `problems` collects what the page
-// says: warnings, errors and exceptions.
-export async function withPage(body, answer = answerEmpty) {
+// says: warnings, errors and exceptions. Without `flags` Chromium is started as it comes.
+export async function withPage(body, answer = answerEmpty, { flags = FLAGS } = {}) {
   // WebGPU is there only for pages of a secure context, which those of the local machine are.
   const server = http.createServer(answer);
   await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
   const executablePath = process.env.CHROMIUM ?? '/usr/bin/chromium';
-  const browser = await chromium.launch({ executablePath, headless: true, args: FLAGS });
+  const browser = await chromium.launch({ executablePath, headless: true, args: [...flags, ...OF_ROOT] });
   try {
     const page = await browser.newPage();
     const problems = [];

@@ -1,5 +1,5 @@
 // Compares what the viewer draws in headless Chromium with what it draws on this machine's own driver, for lights, filters,
-// biases, layouts and debug views of all kinds. At most one pixel in fifty may differ by more than 8 of 255, and only at an
+// biases, layouts, debug views, casters that discard, and rays. At most one pixel in fifty may differ by more than 8 of 255, and only at an
 // edge of either picture: rasterisers decide otherwise about the pixels along it. A warning, an error or an exception of the page is a failure.
 //
 //     node pictures.mjs FOLDER_OF_THE_PAGE FOLDER_OF_PICTURES VIEWER [NAME...]
@@ -8,6 +8,7 @@ import { execFileSync } from 'node:child_process';
 import { mkdir, readFile } from 'node:fs/promises';
 import { join } from 'node:path';
 import { withPage } from './chromium.mjs';
+import { openViewer, settled } from './opening.mjs';
 import { serving } from './serving.mjs';
 
 const [folder, pictures, viewer, ...wanted] = process.argv.slice(2);
@@ -46,7 +47,14 @@ const CASES = {
   hall_lamp: 'scene=hall&show=lamp,3&split=0',
   hall_spot: 'scene=hall&show=spot,1&split=0',
   sky: 'scene=sky&split=0',
+  leaves: 'scene=grove',
+  leaves_map: 'scene=grove&show=map,0&split=0',
+  leaves_sixteen_bits: 'scene=grove&right.half=1&right.filter=hardware&split=0',
+  rays: 'scene=textbook&show=difference',
 };
+
+// Are those that rays are cast for before.
+const TRUTHS = new Set(['rays']);
 
 // Runs in the page: counts the pixels in which two PNG files differ, and those of them that are at no edge of either.
 async function compare([expected, seen, tolerance, reach]) {
@@ -90,24 +98,14 @@ const failures = await withPage(async (page, problems) => {
     const address = `${CASES[name]}&scale=1`;
     const [whole, expected, seen] = ['window', 'expected', 'browser'].map((kind) => join(pictures, `${name}.${kind}.png`));
     const size = [SIZE.width, SIZE.height].map(String);
-    execFileSync(viewer, ['--screenshot', whole, '--size', ...size, '--address', address], { stdio: 'inherit' });
+    const truth = TRUTHS.has(name) ? ['--truth'] : [];
+    execFileSync(viewer, ['--screenshot', whole, '--size', ...size, '--address', address, ...truth], { stdio: 'inherit' });
 
-    // A page of the same path but another fragment would not be loaded again.
-    await page.goto('about:blank');
-    await page.goto(`${page.base}#${address}`);
-    // The address holds all settings once a frame is drawn.
-    const told = await Promise.race([
-      page.waitForFunction(() => location.hash.includes('right.map'), null, { timeout: 120000 }).then(() => ''),
-      page.waitForSelector('#failure:not([hidden])', { timeout: 120000 }).then((element) => element.textContent()),
-    ]);
+    const told = await openViewer(page, address);
     if (told) problems.push(`${name}: the page says: ${told}`);
-    let last = null;
-    for (let tries = 0; tries < 20; tries++) {
-      await page.waitForTimeout(1000);
-      const shot = await page.screenshot({ path: seen, clip: CLIP });
-      if (last?.equals(shot)) break;
-      last = shot;
-    }
+    if (TRUTHS.has(name)) await page.keyboard.press('t');
+    await settled(page);
+    await page.screenshot({ path: seen, clip: CLIP });
     await page.goto('about:blank');
     await page.setContent(`<img src="data:image/png;base64,${await readFile(whole, 'base64')}">`);
     await page.addStyleTag({ content: 'body { margin: 0 } img { display: block }' });

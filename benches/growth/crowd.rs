@@ -21,6 +21,8 @@ pub struct BoxCaster {
     pub indices: wgpu::Buffer,
     pub first_vertex: i32,
     pub index_count: u32,
+    /// Is the number of triangles that the library is told of.
+    pub told_triangles: u32,
     pub bounds: Aabb,
     pub id: u64,
     /// Counts its changes; `None` where it changes in every frame.
@@ -64,6 +66,7 @@ impl Crowd {
                 indices: indices.clone(),
                 first_vertex,
                 index_count: mesh.indices.len() as u32,
+                told_triangles: mesh.indices.len() as u32 / 3,
                 bounds: mesh.bounds(),
                 id,
                 version: Some(0),
@@ -133,7 +136,7 @@ impl ShadowCaster for BoxCaster {
     }
 
     fn triangles(&self) -> u32 {
-        self.index_count / 3
+        self.told_triangles
     }
 
     fn revision(&self) -> Option<Revision> {

@@ -154,49 +154,50 @@ pub fn bare_minimum(stage: &Stage<'_>) {
         "\nsun, 2048 texels a side: the depth pass beside the same triangles without the library, in a draw each and all in one draw"
     );
     for count in [100, 1_000, 10_000] {
-        let crowd = Crowd::new(stage.gpu, count);
-        let list = crowd.list();
-        let mut sun = stage.sun(2048, 1, Filter::default());
-        let frame = frame(&list, Coverage::Bounds(crowd.bounds()));
-        stage.gpu.submit({
-            let mut encoder = stage.gpu.encoder();
-            sun.record_anew(&mut encoder, &frame);
-            encoder
-        });
-        let view = sun.shadow.maps().views().next().expect("boxes cast");
-        // The bare pass clears to 1 and keeps the least depth: the same image with its depth
-        // reversed.
-        let turned = DMat4::from_cols(
-            DVec4::X,
-            DVec4::Y,
-            DVec4::NEG_Z,
-            DVec4::new(0.0, 0.0, 1.0, 1.0),
-        );
-        let clip_from_world = turned * view.clip_from_render().as_dmat4();
-        let uniform = ViewUniform::new(clip_from_world, glam::Vec4::ZERO, glam::Vec4::ZERO);
-        let drawer = DepthDrawer::new(stage.gpu, &uniform, 2048);
-        let joined = std::slice::from_ref(&crowd.mesh);
-        let bare = [
-            (
-                "a draw each",
-                WorldMeshes::in_shared_buffers(stage.gpu, &crowd.parts),
-            ),
-            (
-                "one draw",
-                WorldMeshes::of_meshes(stage.gpu, joined, DVec3::ZERO),
-            ),
-        ];
-        for (name, meshes) in bare {
-            let ratio = stage.ratio(
-                |encoder| sun.record_anew(encoder, &frame),
-                |encoder| drawer.draw(encoder, &meshes),
-            );
+        let ratios = beside_bare(stage, count, 2048);
+        for (name, ratio) in ["a draw each", "one draw"].into_iter().zip(ratios) {
             println!(
                 "{count:>18} casters: {:.3} times the bare pass of {name} on the device (middle half {:.3} to {:.3})",
                 ratio.median, ratio.lower_quartile, ratio.upper_quartile
             );
         }
     }
+}
+
+/// Returns the time of the library's depth pass divided by that of the same triangles without the
+/// library: in a draw each, as the textbook draws them, and all in one draw.
+pub fn beside_bare(stage: &Stage<'_>, count: u32, map_size: u32) -> [Spread; 2] {
+    let crowd = Crowd::new(stage.gpu, count);
+    let list = crowd.list();
+    let mut sun = stage.sun(map_size, 1, Filter::default());
+    let frame = frame(&list, Coverage::Bounds(crowd.bounds()));
+    stage.gpu.submit({
+        let mut encoder = stage.gpu.encoder();
+        sun.record_anew(&mut encoder, &frame);
+        encoder
+    });
+    let view = sun.shadow.maps().views().next().expect("boxes cast");
+    // The bare pass clears to 1 and keeps the least depth: the same image with its depth reversed.
+    let turned = DMat4::from_cols(
+        DVec4::X,
+        DVec4::Y,
+        DVec4::NEG_Z,
+        DVec4::new(0.0, 0.0, 1.0, 1.0),
+    );
+    let clip_from_world = turned * view.clip_from_render().as_dmat4();
+    let uniform = ViewUniform::new(clip_from_world, glam::Vec4::ZERO, glam::Vec4::ZERO);
+    let drawer = DepthDrawer::new(stage.gpu, &uniform, map_size);
+    let joined = std::slice::from_ref(&crowd.mesh);
+    [
+        WorldMeshes::in_shared_buffers(stage.gpu, &crowd.parts),
+        WorldMeshes::of_meshes(stage.gpu, joined, DVec3::ZERO),
+    ]
+    .map(|meshes| {
+        stage.ratio(
+            |encoder| sun.record_anew(encoder, &frame),
+            |encoder| drawer.draw(encoder, &meshes),
+        )
+    })
 }
 
 /// Returns boxes on ground under a point light, as a scene.

@@ -52,8 +52,20 @@ pub fn in_one_pass(stage: &Stage<'_>) {
     }
 }
 
-/// Prints a row, and returns false where the device does not draw six views at once.
-fn row(stage: &Stage<'_>, count: u32, touched: u32, rings: u32) -> bool {
+/// Is what one pass for all faces takes beside a pass each.
+pub struct Comparison {
+    /// Is the time of one pass divided by that of a pass each.
+    pub ratio: Spread,
+    pub rule_takes_one_pass: bool,
+    /// Is the number of triangles of each caster.
+    triangles: u32,
+    /// Are the reports of one pass, and of a pass each.
+    reports: [ShadowReport; 2],
+}
+
+/// Compares both ways for `count` casters, each of which lies in as many faces as `touched` says.
+/// Returns `None` where the device does not draw six views at once.
+pub fn compare(stage: &Stage<'_>, count: u32, touched: u32, rings: u32) -> Option<Comparison> {
     let gpu = stage.gpu;
     let mut lamp = |telling| Lamp::new(gpu, count, touched, rings, telling);
     let [mut told, mut one, mut six] =
@@ -62,12 +74,27 @@ fn row(stage: &Stage<'_>, count: u32, touched: u32, rings: u32) -> bool {
     for lamp in [&mut told, &mut one, &mut six] {
         lamp.seconds(gpu);
     }
-    let ratio = Spread::of((0..stage.repeats).map(|_| one.seconds(gpu) / six.seconds(gpu)));
-    let (one, six) = (one.report(), six.report());
-    if one.passes != 1 || six.passes == 1 {
-        return false;
+    let reports = [one.report().clone(), six.report().clone()];
+    if reports[0].passes != 1 || reports[1].passes == 1 {
+        return None;
     }
-    let triangles = told.things[0].triangles;
+    Some(Comparison {
+        ratio: Spread::of((0..stage.repeats).map(|_| one.seconds(gpu) / six.seconds(gpu))),
+        rule_takes_one_pass: told.report().passes == 1,
+        triangles: told.things[0].triangles,
+        reports,
+    })
+}
+
+/// Prints a row, and returns false where the device does not draw six views at once.
+fn row(stage: &Stage<'_>, count: u32, touched: u32, rings: u32) -> bool {
+    let Some(compared) = compare(stage, count, touched, rings) else {
+        return false;
+    };
+    let Comparison {
+        ratio, triangles, ..
+    } = compared;
+    let [one, six] = &compared.reports;
     let through_faces = 6 * triangles * one.draws();
     println!(
         "{count:>8}{touched:>8}{triangles:>11}{:>8}{:>16}{through_faces:>14}{:>18.0}{:>8.3}{:>18}{:>12}",
@@ -76,7 +103,7 @@ fn row(stage: &Stage<'_>, count: u32, touched: u32, rings: u32) -> bool {
         f64::from(through_faces) / f64::from(six.draws() - one.draws()),
         ratio.median,
         format!("{:.3} to {:.3}", ratio.lower_quartile, ratio.upper_quartile),
-        if told.report().passes == 1 {
+        if compared.rule_takes_one_pass {
             "one pass"
         } else {
             "each"

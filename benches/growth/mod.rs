@@ -1,6 +1,7 @@
 //! Measures how cost grows, one number at a time.
 //!
 //! ```text
+//! card.rs       the row of a machine for doc/measured_on.md
 //! cpu.rs        casters and lights: time and allocations on the CPU, and time on the device
 //! copies.rs     copies of one mesh beside one instanced draw; the draw calls of a yard
 //! device.rs     cascades, map sizes, taps, and the bare minimum: time on the device
@@ -12,6 +13,7 @@
 //! processor.rs  time and allocations on the CPU
 //! ```
 
+pub mod card;
 pub mod copies;
 pub mod counts;
 pub mod cpu;

@@ -72,6 +72,7 @@ impl Movers {
                 indices: indices.clone(),
                 first_vertex: 0,
                 index_count: mesh.indices.len() as u32,
+                told_triangles: mesh.indices.len() as u32 / 3,
                 bounds: Aabb::new(foot, foot + size),
                 id: u64::from(id),
                 version: Some(0),

@@ -49,7 +49,11 @@ pub(crate) struct CasterRecord {
 impl CasterRecord {
     /// Calls the methods of a caster, and then `take` with the record, or with one for each of its
     /// instances. `listed` is the index of the caster in the engine's list or set.
-    pub fn each(caster: &(impl ShadowCaster + ?Sized), listed: u32, mut take: impl FnMut(Self)) {
+    pub(crate) fn each(
+        caster: &(impl ShadowCaster + ?Sized),
+        listed: u32,
+        mut take: impl FnMut(Self),
+    ) {
         let (casts, receives) = (caster.casts(), caster.receives());
         let Some(instances) = caster.instances() else {
             return take(Self {
@@ -124,7 +128,7 @@ pub(crate) struct CastersVersion {
 
 impl CastersVersion {
     /// Returns the number of a state that lasts for one frame.
-    pub fn in_frame(self, frame: u64) -> Self {
+    pub(crate) fn in_frame(self, frame: u64) -> Self {
         Self {
             frame: frame + 1,
             ..self
@@ -163,7 +167,7 @@ impl Default for CasterRecords {
 
 impl CasterRecords {
     /// Makes an empty list, with a tree that follows it or without one.
-    pub fn new(has_tree: bool) -> Self {
+    pub(crate) fn new(has_tree: bool) -> Self {
         Self {
             boxes: Vec::new(),
             facts: Vec::new(),
@@ -177,7 +181,7 @@ impl CasterRecords {
     }
 
     /// Returns the number of the present state.
-    pub fn version(&self) -> CastersVersion {
+    pub(crate) fn version(&self) -> CastersVersion {
         CastersVersion {
             source: self.source,
             changes: self.log.next(),
@@ -187,23 +191,27 @@ impl CasterRecords {
 
     /// Returns what has changed from one state to another, the present one, or `None` where that
     /// is not known.
-    pub fn changes(&self, from: &CastersVersion, to: &CastersVersion) -> Option<ChangedBoxes<'_>> {
+    pub(crate) fn changes(
+        &self,
+        from: &CastersVersion,
+        to: &CastersVersion,
+    ) -> Option<ChangedBoxes<'_>> {
         let same = from.source == to.source && from.frame == to.frame;
         same.then(|| self.log.since(from.changes)).flatten()
     }
 
     /// Makes the present state another than that of all frames before.
-    pub fn count_frame(&mut self) {
+    pub(crate) fn count_frame(&mut self) {
         self.frame += 1;
     }
 
     /// Returns the number of entries.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.facts.len()
     }
 
     /// Sets the record at `index`, which is at most the number of entries.
-    pub fn put(&mut self, index: u32, record: &CasterRecord) {
+    pub(crate) fn put(&mut self, index: u32, record: &CasterRecord) {
         let mut member = record.member;
         let bounds = member.bounds;
         if !self.broken.is_empty() {
@@ -220,13 +228,13 @@ impl CasterRecords {
     }
 
     /// Makes the entry at `index` one of no caster.
-    pub fn clear(&mut self, index: u32) {
+    pub(crate) fn clear(&mut self, index: u32) {
         self.broken.remove(&index);
         self.write(index, CasterBox::NOTHING, &CasterFacts::NOTHING);
     }
 
     /// Removes all entries from `count` on.
-    pub fn truncate(&mut self, count: usize) {
+    pub(crate) fn truncate(&mut self, count: usize) {
         if count < self.len() {
             self.boxes.truncate(count);
             let gone = self.facts.drain(count..);
@@ -237,7 +245,7 @@ impl CasterRecords {
     }
 
     /// Makes the tree anew from all entries.
-    pub fn rebuild_tree(&mut self) {
+    pub(crate) fn rebuild_tree(&mut self) {
         if let Some(tree) = &mut self.tree {
             tree.rebuild(self.boxes.iter().map(|member| member.bounds));
         }

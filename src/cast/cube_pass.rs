@@ -38,14 +38,14 @@ pub(crate) struct PreparedCubePass {
 
 impl PreparedCubePass {
     /// Returns the number of draw calls of the pass.
-    pub fn draws(&self) -> u32 {
+    pub(super) fn draws(&self) -> u32 {
         self.calls.len() as u32
     }
 }
 
 impl CubePass {
     /// Returns `None` where the device does not draw six faces at once, or not correctly.
-    pub fn new(device: &wgpu::Device, label: &str) -> Result<Option<Self>, ShadowError> {
+    pub(super) fn new(device: &wgpu::Device, label: &str) -> Result<Option<Self>, ShadowError> {
         if !supports_cube_multiview(device) {
             return Ok(None);
         }
@@ -78,7 +78,7 @@ impl CubePass {
     /// Lists one pass for `views`, all of which are to be drawn whole. Returns `None` where a pass
     /// for each is cheaper, or where a caster cannot be drawn into six faces at once; `lists` and
     /// `matrices` then hold remains.
-    pub fn prepare<'a>(
+    pub(super) fn prepare<'a>(
         &self,
         device: &wgpu::Device,
         views: &[ViewDraws],
@@ -109,13 +109,13 @@ impl CubePass {
     }
 
     /// Returns the upload that the pass needs.
-    pub fn upload<'a>(&'a self, prepared: &'a PreparedCubePass) -> Option<Upload<'a>> {
+    pub(super) fn upload<'a>(&'a self, prepared: &'a PreparedCubePass) -> Option<Upload<'a>> {
         self.faces.upload(bytemuck::cast_slice(&prepared.uniforms))
     }
 
     /// Draws into the six layers of `map` at once. Each view's list of casters becomes the list of
     /// what was drawn into it.
-    pub fn record(
+    pub(super) fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         map: &DepthMap,
@@ -158,7 +158,7 @@ impl CubePass {
         }
     }
 
-    pub fn invalidate(&mut self) {
+    pub(super) fn invalidate(&mut self) {
         self.faces.invalidate();
     }
 }

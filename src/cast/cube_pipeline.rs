@@ -25,7 +25,7 @@ pub(crate) struct CubePipelines {
 
 impl CubePipelines {
     /// Returns `None` for the engine's own WGSL, whose vertex entry does not take a view index.
-    pub fn of(descriptor: &CasterPipelineDescriptor<'_>) -> Option<Self> {
+    pub(super) fn of(descriptor: &CasterPipelineDescriptor<'_>) -> Option<Self> {
         let CasterVertex::BuiltIn { position, model } = descriptor.vertex else {
             return None;
         };
@@ -40,7 +40,11 @@ impl CubePipelines {
     /// Returns the pipeline for transforms that mirror, or the one for all others. `device` is the
     /// one that the caster's other pipelines were made on, and has `Features::MULTIVIEW`. Returns
     /// `None` where the device refuses to make them.
-    pub fn get(&self, device: &wgpu::Device, mirrored: bool) -> Option<&wgpu::RenderPipeline> {
+    pub(super) fn get(
+        &self,
+        device: &wgpu::Device,
+        mirrored: bool,
+    ) -> Option<&wgpu::RenderPipeline> {
         let make = || {
             capture_device_errors(device, || self.make(device))
                 .ok()

@@ -4,24 +4,16 @@
 //! once per face that it touches. So one pass saves passes and draw calls, and puts every triangle
 //! through six faces.
 //!
-//! The constants were measured on lavapipe of Mesa 25.0.7 (`cargo bench --bench cost`, "one pass
-//! for all faces"). With 50 to 200 casters both ways cost the same where one pass puts through 100
-//! to 250 triangles for each draw call that it saves; with a dozen casters or fewer, where passes
-//! weigh most, they cost the same at 4000 to 20000 triangles for each pass that it saves. The rule
-//! takes the lower ends. On a GPU triangles cost less beside calls, so there one pass is taken more
-//! rarely than it could be.
+//! What it assumes of their costs is in `costs.rs`. On a GPU triangles cost less beside calls, so
+//! there one pass is taken more rarely than it could be.
 
 use glam::Vec4;
 
+use crate::cast::costs::{TRIANGLES_PER_SAVED_DRAW, TRIANGLES_PER_SAVED_PASS};
 use crate::cast::draw_list::DrawCounter;
 use crate::cast::{FrameCasters, ViewDraws};
 use crate::gpu::FACE_COUNT;
 use crate::{Aabb, ShadowView};
-
-/// Is the largest number of triangles, counted over all faces, that is worth one saved draw call.
-const TRIANGLES_PER_DRAW: u64 = 96;
-/// Is the largest number of triangles, counted over all faces, that is worth one saved pass.
-const TRIANGLES_PER_PASS: u64 = 4000;
 
 /// Returns the casters that one pass would draw, in order, where it gives the same depths as a pass
 /// for each face and costs less. `views` are the faces that something casts into, all of which are
@@ -72,7 +64,7 @@ pub(crate) fn one_pass_casters(
         union.push(index);
     }
     let draws_saved = draws_in_passes.sum::<u64>().saturating_sub(counter.draws());
-    let worth = TRIANGLES_PER_PASS * passes_saved + TRIANGLES_PER_DRAW * draws_saved;
+    let worth = TRIANGLES_PER_SAVED_PASS * passes_saved + TRIANGLES_PER_SAVED_DRAW * draws_saved;
     (triangles < worth).then_some(union)
 }
 

@@ -23,7 +23,7 @@ impl PassDefaults<'_> {
     }
 
     /// Limits the pass to the rectangle of the view.
-    pub fn set_rect(&self, pass: &mut wgpu::RenderPass<'_>) {
+    pub(super) fn set_rect(&self, pass: &mut wgpu::RenderPass<'_>) {
         let TexelRect { min, size } = self.texels;
         let [x, y, width, height] = [min.x, min.y, size.x, size.y].map(|texels| texels as f32);
         pass.set_viewport(x, y, width, height, 0.0, 1.0);

@@ -46,18 +46,18 @@ pub(crate) struct DrawLists<'a> {
 
 impl<'a> DrawLists<'a> {
     /// Returns the calls of a pass by the range that [`DrawLists::add`] returned.
-    pub fn calls(&self, range: Range<usize>) -> &[DrawCall<'a>] {
+    pub(super) fn calls(&self, range: Range<usize>) -> &[DrawCall<'a>] {
         &self.calls[range]
     }
 
     /// Removes all lists.
-    pub fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.calls.clear();
     }
 
     /// Adds the draw calls of a pass that draws `drawn`, and their matrices to `matrices`. `check`
     /// may refuse the pipeline of a caster; the list is then incomplete.
-    pub fn add<E>(
+    pub(super) fn add<E>(
         &mut self,
         drawn: impl Iterator<Item = u32>,
         casters: &FrameCasters<'a>,
@@ -97,7 +97,7 @@ impl<'a> DrawLists<'a> {
     }
 
     /// Returns an empty value that reuses the memory of this one, for casters of another frame.
-    pub fn recycled<'b>(mut self) -> DrawLists<'b> {
+    pub(super) fn recycled<'b>(mut self) -> DrawLists<'b> {
         self.items.clear();
         self.calls.clear();
         // The standard library collects into the memory of the vector that is consumed.
@@ -138,7 +138,7 @@ impl<'a> DrawCall<'a> {
         takes
     }
 
-    pub fn pipeline(&self) -> &'a CasterPipeline {
+    pub(super) fn pipeline(&self) -> &'a CasterPipeline {
         match self {
             Self::Caster { pipeline, .. } | Self::Instances { pipeline, .. } => pipeline,
         }
@@ -170,7 +170,7 @@ pub(crate) struct DrawCounter {
 }
 
 impl DrawCounter {
-    pub const fn new() -> Self {
+    pub(super) const fn new() -> Self {
         Self {
             seen: [0; 64],
             draws: 0,
@@ -178,7 +178,7 @@ impl DrawCounter {
     }
 
     /// Counts a caster by the batch that it belongs to.
-    pub fn add(&mut self, batch: Option<NonZeroU32>) {
+    pub(super) fn add(&mut self, batch: Option<NonZeroU32>) {
         let Some(batch) = batch else {
             self.draws += 1;
             return;
@@ -189,7 +189,7 @@ impl DrawCounter {
         *word |= bit;
     }
 
-    pub fn draws(&self) -> u64 {
+    pub(super) fn draws(&self) -> u64 {
         self.draws
     }
 }

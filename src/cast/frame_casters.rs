@@ -66,7 +66,7 @@ pub(crate) struct FrameCasters<'a> {
 impl<'a> FrameCasters<'a> {
     /// Calls the methods of the casters of a list, or takes the records of a set. `field` is the
     /// path in the caller's frame. Bounds that are neither finite nor empty are added to `broken`.
-    pub fn new(
+    pub(crate) fn new(
         field: &'static str,
         casters: Casters<'a>,
         listed: &'a mut CasterRecords,
@@ -110,7 +110,7 @@ impl<'a> FrameCasters<'a> {
     }
 
     /// Returns the caster at `index`, or the one that the instance at `index` belongs to.
-    pub fn caster(&self, index: u32) -> &'a dyn ShadowCaster {
+    pub(crate) fn caster(&self, index: u32) -> &'a dyn ShadowCaster {
         let listed = self.facts(index).listed;
         match self.casters {
             Casters::List(list) => list[listed as usize],
@@ -120,7 +120,7 @@ impl<'a> FrameCasters<'a> {
 
     /// Returns the instance at `index` with its geometry. Returns `None` for a caster that draws
     /// itself, and for one that no longer has the instance that it had when the frame began.
-    pub fn instance(&self, index: u32) -> Option<(&'a MeshGeometry, &'a Instance)> {
+    pub(crate) fn instance(&self, index: u32) -> Option<(&'a MeshGeometry, &'a Instance)> {
         let instance = self.facts(index).instance?;
         let CasterInstances {
             geometry,
@@ -131,17 +131,17 @@ impl<'a> FrameCasters<'a> {
     }
 
     /// Returns the index in the engine's list or set of the caster at `index`.
-    pub fn listed_index(&self, index: u32) -> usize {
+    pub(crate) fn listed_index(&self, index: u32) -> usize {
         self.facts(index).listed as usize
     }
 
     /// Returns what the methods of the caster at `index` returned.
-    pub fn facts(&self, index: u32) -> &'a CasterFacts {
+    pub(crate) fn facts(&self, index: u32) -> &'a CasterFacts {
         &self.records.facts[index as usize]
     }
 
     /// Returns the number of casters, where instances count one by one.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         match self.casters {
             Casters::List(_) => self.records.facts.len(),
             Casters::Set(set) => set.count(),
@@ -149,12 +149,12 @@ impl<'a> FrameCasters<'a> {
     }
 
     /// Returns the bounds of those that cast.
-    pub fn casting(&self) -> Boxes<'a> {
+    pub(crate) fn casting(&self) -> Boxes<'a> {
         self.boxes(Role::Casts)
     }
 
     /// Returns the bounds of those that receive.
-    pub fn receiving(&self) -> Boxes<'a> {
+    pub(crate) fn receiving(&self) -> Boxes<'a> {
         self.boxes(Role::Receives)
     }
 
@@ -167,12 +167,12 @@ impl<'a> FrameCasters<'a> {
     }
 
     /// Returns the number of the state that all of this is in.
-    pub fn version(&self) -> CastersVersion {
+    pub(crate) fn version(&self) -> CastersVersion {
         self.version
     }
 
     /// Returns the changes since an earlier state, or `None` where they are not known.
-    pub fn changes_since(&self, version: &CastersVersion) -> Option<ChangedBoxes<'a>> {
+    pub(crate) fn changes_since(&self, version: &CastersVersion) -> Option<ChangedBoxes<'a>> {
         self.records.changes(version, &self.version)
     }
 }

@@ -31,7 +31,7 @@ pub(crate) struct InstanceMatrices {
 }
 
 impl InstanceMatrices {
-    pub fn new(device: &wgpu::Device, label: &str) -> Self {
+    pub(super) fn new(device: &wgpu::Device, label: &str) -> Self {
         Self {
             label: format!("{label} instances"),
             most_bytes: device.limits().max_buffer_size,
@@ -42,14 +42,14 @@ impl InstanceMatrices {
     }
 
     /// Begins a frame.
-    pub fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.bytes.clear();
         self.starts.clear();
     }
 
     /// Adds an instance for the pipeline of `geometry`. Returns `None` where the pipeline reads no
     /// matrix.
-    pub fn add(&mut self, geometry: &MeshGeometry, matrix: &Mat4) -> Option<InstancePlace> {
+    pub(super) fn add(&mut self, geometry: &MeshGeometry, matrix: &Mat4) -> Option<InstancePlace> {
         let layout = geometry.matrix_layout()?;
         let stride = layout.0 as usize;
         let start = self.starts.last().copied().unwrap_or(0);
@@ -69,7 +69,7 @@ impl InstanceMatrices {
 
     /// Makes the buffers large enough for the matrices of the frame. Buffers that are replaced stay
     /// alive in the commands that were recorded with them.
-    pub fn prepare(&mut self, device: &wgpu::Device) -> Result<(), ShadowError> {
+    pub(super) fn prepare(&mut self, device: &wgpu::Device) -> Result<(), ShadowError> {
         for index in 0..self.starts.len() {
             let needed = self.part(index).len() as u64;
             if self
@@ -87,7 +87,7 @@ impl InstanceMatrices {
     }
 
     /// Returns the uploads of the frame.
-    pub fn uploads(&self) -> impl Iterator<Item = Upload<'_>> {
+    pub(super) fn uploads(&self) -> impl Iterator<Item = Upload<'_>> {
         let parts = (0..self.starts.len()).map(|index| self.part(index));
         self.buffers.iter().zip(parts)
     }
@@ -99,7 +99,7 @@ impl InstanceMatrices {
     }
 
     /// Returns the buffer at the index of an [`InstancePlace`].
-    pub fn buffer(&self, index: u32) -> &wgpu::Buffer {
+    pub(super) fn buffer(&self, index: u32) -> &wgpu::Buffer {
         &self.buffers[index as usize]
     }
 }

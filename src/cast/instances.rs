@@ -21,7 +21,7 @@ pub(crate) struct Instance {
 impl Instance {
     /// Makes an instance of a mesh with `bounds_model`. Where the pipeline of the geometry reads
     /// no matrix, the mesh is in render space already, and the matrix has no effect.
-    pub fn new(
+    pub(crate) fn new(
         geometry: &MeshGeometry,
         bounds_model: &Aabb,
         render_from_model: Mat4,

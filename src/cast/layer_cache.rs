@@ -5,6 +5,7 @@ use std::num::NonZeroU32;
 use std::ops::Range;
 
 use crate::ShadowView;
+use crate::cast::costs::{TEXELS_PER_DRAW, TEXELS_PER_TRIANGLE};
 use crate::cast::draw_list::DrawCounter;
 use crate::cast::{FrameCasters, Revision};
 use crate::fit::{TexelRect, ViewPlacement};
@@ -31,7 +32,7 @@ pub(crate) struct ViewDraws {
 }
 
 impl ViewDraws {
-    pub fn new(view: ShadowView, casters: Vec<u32>) -> Self {
+    pub(crate) fn new(view: ShadowView, casters: Vec<u32>) -> Self {
         Self {
             view,
             casters,
@@ -45,7 +46,7 @@ impl ViewDraws {
     }
 
     /// Returns the number of draw calls that the view takes, which is 0 for a view that is kept.
-    pub fn draw_calls(&self) -> u32 {
+    pub(crate) fn draw_calls(&self) -> u32 {
         (self.calls.len() + self.static_calls.len()) as u32
     }
 }
@@ -67,7 +68,7 @@ pub(crate) enum Plan {
 impl Plan {
     /// Returns how often the plan renders the view: into the layer, and into the static-caster
     /// cache.
-    pub const fn renders(self) -> u32 {
+    pub(crate) const fn renders(self) -> u32 {
         match self {
             Self::Keep => 0,
             Self::All | Self::OverStaticCache => 1,
@@ -92,18 +93,6 @@ struct Drawn {
 /// Is the number of draws without a change after which a caster, or a view, counts as static. A
 /// caster that is animated at a quarter of the frame rate or faster never does.
 const STATIC_AFTER_DRAWS: u32 = 4;
-
-/// Is the number of copied texels that cost as much as one draw. A static-caster cache pays where
-/// drawing its casters again would cost more than copying a layer. In software a draw of a box
-/// costs as much as copying 100 000 texels (`cargo bench --bench cost`, the table in which one of
-/// many casters moves); a third of that leaves room for devices that draw faster in relation to
-/// their memory.
-const TEXELS_PER_DRAW: u64 = 32_768;
-
-/// Is the number of copied texels that cost as much as one triangle. It compares the memory that a
-/// copied texel moves (8 bytes) with the corners that a triangle fetches and transforms (some 100
-/// bytes where corners are shared); a software rasteriser takes far longer over triangles.
-const TEXELS_PER_TRIANGLE: u64 = 16;
 
 /// Is the longest time, in draws, for which no static-caster cache is made after one that did not
 /// last. With a pause this long, a cache made for nothing costs less than one draw in a hundred.
@@ -143,12 +132,12 @@ struct StaticCasterCache {
 
 impl LayerCache {
     /// Returns whether the layer holds nothing that a later frame may rely on.
-    pub fn is_empty(&self) -> bool {
+    pub(super) fn is_empty(&self) -> bool {
         self.placement.is_none()
     }
 
     /// Returns whether the layer holds `view`, whatever the casters.
-    pub fn is_of(&self, view: &ShadowView) -> bool {
+    pub(super) fn is_of(&self, view: &ShadowView) -> bool {
         self.placement == Some((*view.placement(), view.texels()))
     }
 
@@ -181,7 +170,12 @@ impl LayerCache {
     }
 
     /// Returns what `draws` needs. `can_copy` is false where layers cannot be copied.
-    pub fn plan(&self, draws: &ViewDraws, casters: &FrameCasters<'_>, can_copy: bool) -> Plan {
+    pub(super) fn plan(
+        &self,
+        draws: &ViewDraws,
+        casters: &FrameCasters<'_>,
+        can_copy: bool,
+    ) -> Plan {
         if draws.deferred || self.holds_in_order(draws, casters) {
             return Plan::Keep;
         }
@@ -216,7 +210,7 @@ impl LayerCache {
 
     /// Returns the largest render coordinate that the layer's depths will have been computed from
     /// once `draws` has been carried out as planned.
-    pub fn render_reach_after(&self, draws: &ViewDraws) -> f64 {
+    pub(super) fn render_reach_after(&self, draws: &ViewDraws) -> f64 {
         let now = draws.view.render_reach();
         match draws.plan {
             Plan::Keep => self.render_reach,
@@ -226,7 +220,7 @@ impl LayerCache {
     }
 
     /// Returns whether the static-caster cache holds a caster of this revision.
-    pub fn is_static(&self, revision: Option<Revision>) -> bool {
+    pub(super) fn is_static(&self, revision: Option<Revision>) -> bool {
         let casters = &self.static_cache.casters;
         revision.is_some()
             && casters
@@ -235,7 +229,7 @@ impl LayerCache {
     }
 
     /// Takes note of the order of the casters of a view that is kept.
-    pub fn keep(&mut self, draws: &ViewDraws, casters: &FrameCasters<'_>) {
+    pub(super) fn keep(&mut self, draws: &ViewDraws, casters: &FrameCasters<'_>) {
         if !draws.deferred && !self.holds_in_order(draws, casters) {
             self.note_order(draws, casters);
         }
@@ -252,7 +246,7 @@ impl LayerCache {
 
     /// Returns the revisions, in order, of the casters that the static-caster cache will hold once
     /// `draws` has renewed it.
-    pub fn static_after_renewal(
+    pub(super) fn static_after_renewal(
         &self,
         draws: &ViewDraws,
         casters: &FrameCasters<'_>,
@@ -263,7 +257,7 @@ impl LayerCache {
     }
 
     /// Updates the cache's state to what `draws` puts into the layer.
-    pub fn replace(&mut self, draws: &ViewDraws, casters: &FrameCasters<'_>) {
+    pub(super) fn replace(&mut self, draws: &ViewDraws, casters: &FrameCasters<'_>) {
         self.render_reach = self.render_reach_after(draws);
         let placement = Some((*draws.view.placement(), draws.view.texels()));
         if self.placement != placement {

@@ -33,7 +33,7 @@ pub(super) struct PassFrame<'a, 'c> {
 }
 
 impl Layer {
-    pub fn new(label: String) -> Self {
+    pub(super) fn new(label: String) -> Self {
         Self {
             label,
             cache: LayerCache::default(),
@@ -44,13 +44,13 @@ impl Layer {
 
     /// Takes the state of the layer and leaves an empty one, under which no depths in the layer are
     /// relied on.
-    pub fn take_cache(&mut self) -> LayerCache {
+    pub(super) fn take_cache(&mut self) -> LayerCache {
         std::mem::take(&mut self.cache)
     }
 
     /// Makes the static-caster cache of the layer if it has none. Returns false where the device
     /// could not make one; all casters are then drawn.
-    pub fn make_static_cache(&mut self, device: &wgpu::Device, map: &DepthMap) -> bool {
+    pub(super) fn make_static_cache(&mut self, device: &wgpu::Device, map: &DepthMap) -> bool {
         if self.static_cache.is_none() && !self.static_cache_failed {
             let label = format!("{} static casters", self.label);
             self.static_cache =
@@ -63,7 +63,7 @@ impl Layer {
 
 impl PassFrame<'_, '_> {
     /// Returns the state of a pass that the casters of a view rely on.
-    pub fn defaults(&self, draws: &ViewDraws) -> PassDefaults<'_> {
+    pub(super) fn defaults(&self, draws: &ViewDraws) -> PassDefaults<'_> {
         PassDefaults {
             view_group: self.view_group,
             offset: Some(self.stride * draws.view.index()),
@@ -73,7 +73,12 @@ impl PassFrame<'_, '_> {
 
     /// Draws the calls of a view that are listed under `calls`. The viewport and scissor rectangle
     /// of the pass are those of the view.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, draws: &ViewDraws, calls: &Range<usize>) {
+    pub(super) fn draw(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        draws: &ViewDraws,
+        calls: &Range<usize>,
+    ) {
         let defaults = self.defaults(draws);
         let calls = self.lists.calls(calls.clone());
         let context = DrawContext {
@@ -88,7 +93,7 @@ impl PassFrame<'_, '_> {
     }
 
     /// Counts the casters of a view that come from its static-caster cache.
-    pub fn count_copied(&self, draws: &mut ViewDraws, cache: &LayerCache) {
+    pub(super) fn count_copied(&self, draws: &mut ViewDraws, cache: &LayerCache) {
         let drawn = draws.casters.iter();
         let facts = drawn.map(|&caster| self.casters.facts(caster));
         for facts in facts.filter(|facts| cache.is_static(facts.revision)) {

@@ -24,7 +24,7 @@ pub(crate) struct MeshGeometry {
 impl MeshGeometry {
     /// Checks a pipeline and buffers of `device`, and keeps handles of them. `fields` are their
     /// paths, for errors.
-    pub fn new(
+    pub(crate) fn new(
         fields: &MeshFields,
         device: &wgpu::Device,
         pipeline: &CasterPipeline,
@@ -42,24 +42,24 @@ impl MeshGeometry {
     }
 
     /// Replaces the buffers and the range by others that have been checked.
-    pub fn set_buffers(&mut self, vertices: &wgpu::Buffer, indices: MeshIndices) {
+    pub(crate) fn set_buffers(&mut self, vertices: &wgpu::Buffer, indices: MeshIndices) {
         self.vertices = vertices.clone();
         self.sort_key = sort_key(vertices, &indices);
         self.indices = indices;
     }
 
     /// Returns the pipeline for transforms that mirror, or the one for all others.
-    pub fn pipeline(&self, mirrored: bool) -> &CasterPipeline {
+    pub(crate) fn pipeline(&self, mirrored: bool) -> &CasterPipeline {
         &self.pipelines[usize::from(mirrored)]
     }
 
-    pub fn sort_key(&self) -> u64 {
+    pub(crate) fn sort_key(&self) -> u64 {
         self.sort_key
     }
 
     /// Returns the stride of an instance in vertex buffer 1 and the offset of its matrix, both in
     /// bytes. Returns `None` where vertices are in render space already.
-    pub fn matrix_layout(&self) -> Option<(u64, u64)> {
+    pub(crate) fn matrix_layout(&self) -> Option<(u64, u64)> {
         match self.pipelines[0].model_transform() {
             ModelTransform::Identity => None,
             ModelTransform::InstanceMatrix {
@@ -70,7 +70,7 @@ impl MeshGeometry {
     }
 
     /// Returns the number of triangles of one instance.
-    pub fn triangles(&self) -> u32 {
+    pub(crate) fn triangles(&self) -> u32 {
         let corners = match &self.indices {
             MeshIndices::None { vertices } => vertices.len(),
             MeshIndices::Buffer { indices, .. } => indices.len(),
@@ -79,19 +79,19 @@ impl MeshGeometry {
     }
 
     /// Returns whether both draw the same triangles: one call then draws instances of both.
-    pub fn draws_the_same(&self, other: &Self) -> bool {
+    pub(crate) fn draws_the_same(&self, other: &Self) -> bool {
         std::ptr::eq(self, other)
             || self.shares_buffers(other) && range(&self.indices) == range(&other.indices)
     }
 
     /// Returns whether [`Self::bind`] binds the same for both.
-    pub fn shares_buffers(&self, other: &Self) -> bool {
+    pub(crate) fn shares_buffers(&self, other: &Self) -> bool {
         self.vertices == other.vertices
             && index_buffer(&self.indices) == index_buffer(&other.indices)
     }
 
     /// Sets vertex buffer 0, and the index buffer if there is one.
-    pub fn bind(&self, pass: &mut wgpu::RenderPass<'_>) {
+    pub(crate) fn bind(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         if let MeshIndices::Buffer { buffer, format, .. } = &self.indices {
             pass.set_index_buffer(buffer.slice(..), *format);
@@ -99,7 +99,7 @@ impl MeshGeometry {
     }
 
     /// Draws instances, with all buffers set.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, instances: Range<u32>) {
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, instances: Range<u32>) {
         match &self.indices {
             MeshIndices::None { vertices } => pass.draw(vertices.clone(), instances),
             MeshIndices::Buffer {

@@ -25,6 +25,7 @@
 //! instance_matrices.rs   the matrices that these draw
 //! draw_casters.rs        the loop that makes the draw calls
 //! cube_pass.rs           six faces in one pass; cube_rule.rs: when that is cheaper than a pass for each
+//! costs.rs               what passes, draws, triangles and copies cost beside each other
 //! ```
 
 mod caster;
@@ -32,6 +33,7 @@ mod caster_limits;
 mod caster_records;
 mod caster_set;
 mod closed;
+mod costs;
 mod cube_pass;
 mod cube_pipeline;
 mod cube_rule;

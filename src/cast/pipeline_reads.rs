@@ -13,7 +13,7 @@ pub(crate) struct VertexReads {
 }
 
 impl VertexReads {
-    pub fn of(vertex: &CasterVertex<'_>) -> Self {
+    pub(super) fn of(vertex: &CasterVertex<'_>) -> Self {
         match *vertex {
             CasterVertex::BuiltIn { position, .. } => Self {
                 array_stride: position.array_stride,
@@ -36,7 +36,7 @@ impl VertexReads {
     }
 
     /// Returns the bytes that the buffer must have for `vertices` vertices of one instance.
-    pub fn bytes(&self, vertices: u32) -> u64 {
+    pub(super) fn bytes(&self, vertices: u32) -> u64 {
         let steps = if self.per_instance { 1 } else { vertices };
         match steps.checked_sub(1) {
             Some(last) => u64::from(last)

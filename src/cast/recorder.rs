@@ -62,7 +62,7 @@ pub(crate) struct PreparedViews<'a> {
 impl Recorder {
     /// Makes a recorder for `views` views, each with a layer of its own unless they share one;
     /// `is_cube` states that they are the six faces of one cube.
-    pub fn new(
+    pub(crate) fn new(
         device: &wgpu::Device,
         label: &str,
         views: u32,
@@ -120,23 +120,23 @@ impl Recorder {
     }
 
     /// Returns how often `draws` needs its view rendered.
-    pub fn renders(&self, draws: &ViewDraws, casters: &FrameCasters<'_>) -> u32 {
+    pub(crate) fn renders(&self, draws: &ViewDraws, casters: &FrameCasters<'_>) -> u32 {
         let layer = &self.layers[draws.view.index() as usize];
         layer.cache.plan(draws, casters, self.can_copy).renders()
     }
 
     /// Returns whether the layer of `view` holds that view, whatever its casters.
-    pub fn holds(&self, view: &ShadowView) -> bool {
+    pub(crate) fn holds(&self, view: &ShadowView) -> bool {
         self.layers[view.index() as usize].cache.is_of(view)
     }
 
     /// Resets the state of a view whose texels now belong to others.
-    pub fn forget(&mut self, view: u32) {
+    pub(crate) fn forget(&mut self, view: u32) {
         self.layers[view as usize].cache = LayerCache::default();
     }
 
     /// Returns the device memory, in bytes, of the static-caster caches.
-    pub fn bytes(&self) -> u64 {
+    pub(crate) fn bytes(&self) -> u64 {
         let own = self.layers.iter().filter_map(|l| l.static_cache.as_ref());
         let shared = self.shared_layer.iter().filter_map(|l| l.static_cache());
         own.chain(shared).map(DepthMap::bytes).sum()
@@ -144,7 +144,7 @@ impl Recorder {
 
     /// Plans the frame for `map` and finds the uniforms of `views`. Each view is made to allow for
     /// the rounding of the depths that its layer will hold.
-    pub fn prepare<'a>(
+    pub(crate) fn prepare<'a>(
         &mut self,
         device: &wgpu::Device,
         map: &DepthMap,
@@ -164,7 +164,7 @@ impl Recorder {
     }
 
     /// Adds what must be copied before the passes.
-    pub fn add_uploads<'a>(
+    pub(crate) fn add_uploads<'a>(
         &'a self,
         prepared: &'a PreparedViews<'_>,
         uploads: &mut Vec<Upload<'a>>,
@@ -266,7 +266,7 @@ impl Recorder {
     ///
     /// The state of a layer is reset before anything is drawn into it and set again when its pass
     /// is complete: a caster that panics leaves a layer behind that the next frame draws again.
-    pub fn record(
+    pub(crate) fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         map: &DepthMap,
@@ -331,7 +331,7 @@ impl Recorder {
     }
 
     /// Resets the state of all layers, so that every view is drawn again.
-    pub fn invalidate(&mut self) {
+    pub(crate) fn invalidate(&mut self) {
         for layer in &mut self.layers {
             layer.cache = LayerCache::default();
         }

@@ -32,7 +32,7 @@ struct SharedStaticCache {
 }
 
 impl SharedLayer {
-    pub fn new(
+    pub(super) fn new(
         device: &wgpu::Device,
         label: &str,
         format: DepthFormat,
@@ -67,7 +67,7 @@ impl SharedLayer {
 
     /// Makes the texture of the static casters for `map` if there is none. Returns false where the
     /// device could not make it; all casters are then drawn.
-    pub fn make_static_cache(
+    pub(super) fn make_static_cache(
         &mut self,
         device: &wgpu::Device,
         label: &str,
@@ -102,19 +102,19 @@ impl SharedLayer {
     }
 
     /// Returns the texture of the static casters, if there is one.
-    pub fn static_cache(&self) -> Option<&DepthMap> {
+    pub(super) fn static_cache(&self) -> Option<&DepthMap> {
         self.static_cache.as_ref().map(|cache| &cache.map)
     }
 
     /// Sets the depths within the scissor rectangle of a pass to the far plane.
-    pub fn clear(&self, pass: &mut wgpu::RenderPass<'_>) {
+    pub(super) fn clear(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_pipeline(&self.clear);
         pass.draw(0..3, 0..1);
     }
 
     /// Sets the depths within the scissor rectangle of a pass to those of the static casters. It
     /// replaces bind group 0.
-    pub fn copy_static_casters(&self, pass: &mut wgpu::RenderPass<'_>) {
+    pub(super) fn copy_static_casters(&self, pass: &mut wgpu::RenderPass<'_>) {
         let Some(cache) = &self.static_cache else {
             return;
         };

@@ -18,7 +18,7 @@ pub(crate) struct CasterViewUniform {
 pub(crate) const VIEW_UNIFORM_BYTES: u64 = size_of::<CasterViewUniform>() as u64;
 
 impl CasterViewUniform {
-    pub fn of(view: &ShadowView) -> Self {
+    pub(super) fn of(view: &ShadowView) -> Self {
         Self {
             clip_from_anchor: view.clip_from_anchor().to_cols_array_2d(),
             anchor_render: view.anchor_render().to_array(),

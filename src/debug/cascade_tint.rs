@@ -26,10 +26,10 @@ pub(crate) struct CascadeTint {
 
 impl CascadeTint {
     /// Is the largest number of views of one light that a tint distinguishes.
-    pub const VIEWS: usize = 8;
+    pub(super) const VIEWS: usize = 8;
 
     /// Creates the pipeline for targets of `format`. The caller captures the errors of the device.
-    pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
+    pub(super) fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
         let layout = create_layout(device);
         Self {
             pipeline: create_pipeline(device, &layout, format),
@@ -42,7 +42,7 @@ impl CascadeTint {
     }
 
     /// Records the draw. If it returns an error, nothing has been recorded.
-    pub fn draw(
+    pub(super) fn draw(
         &self,
         device: &wgpu::Device,
         pass: &mut wgpu::RenderPass<'_>,

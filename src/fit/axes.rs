@@ -10,7 +10,7 @@ use crate::Aabb;
 /// They depend on the light's direction and on the world's up axis alone, never on a camera, so
 /// that texels stay at their positions in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LightAxes {
+pub(crate) struct LightAxes {
     /// Has the rows right, up and toward-light: `light_from_world * v` gives light coordinates of a
     /// world direction.
     pub light_from_world: DMat3,
@@ -27,7 +27,7 @@ const UP_COSINE: f64 = 0.9;
 impl LightAxes {
     /// Returns the axes for a light that shines along `direction_world` (any length but zero;
     /// finite), in a world whose up axis is `up_world`.
-    pub fn new(direction_world: DVec3, up_world: DVec3) -> Self {
+    pub(crate) fn new(direction_world: DVec3, up_world: DVec3) -> Self {
         let toward_light = -scaled_unit(direction_world);
         let up = scaled_unit(up_world);
         let reference = if toward_light.dot(up).abs() < UP_COSINE {
@@ -51,17 +51,17 @@ impl LightAxes {
     }
 
     /// Returns the world direction of the light's x axis.
-    pub fn right(&self) -> DVec3 {
+    pub(crate) fn right(&self) -> DVec3 {
         self.light_from_world.row(0)
     }
 
     /// Returns the world direction of the light's y axis.
-    pub fn up(&self) -> DVec3 {
+    pub(crate) fn up(&self) -> DVec3 {
         self.light_from_world.row(1)
     }
 
     /// Returns the world direction toward the light.
-    pub fn toward_light(&self) -> DVec3 {
+    pub(crate) fn toward_light(&self) -> DVec3 {
         self.light_from_world.row(2)
     }
 }
@@ -79,17 +79,17 @@ pub(crate) struct LightSpace {
 
 impl LightSpace {
     /// Returns the light coordinates of a point of render space.
-    pub fn point(&self, point_render: DVec3) -> DVec3 {
+    pub(crate) fn point(&self, point_render: DVec3) -> DVec3 {
         self.axes.light_from_world * (self.origin + point_render)
     }
 
     /// Returns z of the light coordinates of a point of render space; it grows toward the light.
-    pub fn depth(&self, point_render: DVec3) -> f64 {
+    pub(crate) fn depth(&self, point_render: DVec3) -> f64 {
         self.axes.toward_light().dot(self.origin + point_render)
     }
 
     /// Returns the box in light space around a box in render space.
-    pub fn bounds(&self, bounds: &Aabb) -> LightBox {
+    pub(crate) fn bounds(&self, bounds: &Aabb) -> LightBox {
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
         let center = self.point((min + max) * 0.5);
         let half = (max - min) * 0.5;
@@ -133,17 +133,17 @@ pub(crate) struct LightBox {
 }
 
 impl LightBox {
-    pub const EMPTY: Self = Self {
+    pub(crate) const EMPTY: Self = Self {
         min: DVec3::INFINITY,
         max: DVec3::NEG_INFINITY,
     };
 
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.min.cmpgt(self.max).any()
     }
 
     /// Returns the box with every side `distance` farther out.
-    pub fn grown(&self, distance: f64) -> Self {
+    pub(crate) fn grown(&self, distance: f64) -> Self {
         Self {
             min: self.min - distance,
             max: self.max + distance,
@@ -157,57 +157,57 @@ impl LightBox {
     }
 
     /// Returns whether the box holds all of `other`, whatever the rounding of points in it.
-    pub fn surely_holds(&self, other: &Self) -> bool {
+    pub(crate) fn surely_holds(&self, other: &Self) -> bool {
         self.surely_holds_xy(other) && self.surely_holds_depths(other)
     }
 
     /// Returns whether the box holds all of `other` as seen from the light.
-    pub fn holds_xy(&self, other: &Self) -> bool {
+    pub(crate) fn holds_xy(&self, other: &Self) -> bool {
         let (low, high) = (self.min.cmple(other.min), self.max.cmpge(other.max));
         low.x && low.y && high.x && high.y
     }
 
     /// Returns whether it does so as seen from the light, whatever the rounding of points in it.
-    pub fn surely_holds_xy(&self, other: &Self) -> bool {
+    pub(crate) fn surely_holds_xy(&self, other: &Self) -> bool {
         self.holds_xy(&other.with_rounding())
     }
 
     /// Returns whether all depths of `other` are among its own, whatever the rounding.
-    pub fn surely_holds_depths(&self, other: &Self) -> bool {
+    pub(crate) fn surely_holds_depths(&self, other: &Self) -> bool {
         let other = other.with_rounding();
         self.min.z <= other.min.z && self.max.z >= other.max.z
     }
 
     /// Returns the longer of its sides across the light; 0 for an empty box.
-    pub fn widest_side(&self) -> f64 {
+    pub(crate) fn widest_side(&self) -> f64 {
         (self.max - self.min).truncate().max_element().max(0.0)
     }
 
     /// Returns the distance from the origin of light space to the farthest corner.
-    pub fn reach(&self) -> f64 {
+    pub(crate) fn reach(&self) -> f64 {
         self.min.abs().max(self.max.abs()).length()
     }
 
-    pub fn include(&mut self, point: DVec3) {
+    pub(crate) fn include(&mut self, point: DVec3) {
         self.min = self.min.min(point);
         self.max = self.max.max(point);
     }
 
-    pub fn union(&mut self, other: &Self) {
+    pub(crate) fn union(&mut self, other: &Self) {
         self.min = self.min.min(other.min);
         self.max = self.max.max(other.max);
     }
 
     /// Returns the part of the box, at all of its own depths, that is inside the sides of `other`
     /// as seen from the light, or `None` where there is none.
-    pub fn intersection_xy(&self, other: &Self) -> Option<Self> {
+    pub(crate) fn intersection_xy(&self, other: &Self) -> Option<Self> {
         let min = self.min.max(other.min).with_z(self.min.z);
         let max = self.max.min(other.max).with_z(self.max.z);
         min.cmple(max).all().then_some(Self { min, max })
     }
 
     /// Returns whether the two boxes overlap as seen from the light (xy only; touching counts).
-    pub fn overlaps_xy(&self, other: &Self) -> bool {
+    pub(crate) fn overlaps_xy(&self, other: &Self) -> bool {
         self.min.x <= other.max.x
             && other.min.x <= self.max.x
             && self.min.y <= other.max.y

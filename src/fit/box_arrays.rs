@@ -18,13 +18,13 @@ pub(crate) struct BoxArrays {
 }
 
 impl BoxArrays {
-    pub fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         let arrays = self.centers.iter_mut().chain(&mut self.halves);
         arrays.for_each(Vec::clear);
     }
 
     /// Adds a box that is not empty; `point` is the one that all boxes are held relative to.
-    pub fn push(&mut self, bounds: &Aabb, point: DVec3) {
+    pub(super) fn push(&mut self, bounds: &Aabb, point: DVec3) {
         let (min, max) = (bounds.min.as_dvec3() - point, bounds.max.as_dvec3() - point);
         let (center, half) = ((min + max) * 0.5, (max - min) * 0.5);
         // A distance is a sum of six products and an offset, of factors that are rounded to f32:
@@ -43,7 +43,7 @@ impl BoxArrays {
     /// Fills `found` with the numbers of the boxes, counted in the order in which they were added,
     /// that may reach into `region`. `point` is that of the boxes. None is missing for which
     /// [`HalfSpaces::relation`] tells anything but that it is outside.
-    pub fn find_in(&mut self, region: &HalfSpaces, point: DVec3, found: &mut Vec<u32>) {
+    pub(super) fn find_in(&mut self, region: &HalfSpaces, point: DVec3, found: &mut Vec<u32>) {
         let count = self.centers[0].len();
         self.depths.clear();
         self.depths.resize(count, f32::INFINITY);

@@ -24,7 +24,7 @@ pub(crate) struct CasterBox {
 
 impl CasterBox {
     /// Is the box of no caster.
-    pub const NOTHING: Self = Self {
+    pub(crate) const NOTHING: Self = Self {
         bounds: Aabb::EMPTY,
         casts: false,
         receives: false,
@@ -54,17 +54,17 @@ pub(crate) struct Boxes<'a> {
 
 impl<'a> Boxes<'a> {
     /// Returns the box at an index, which is empty where it does not count.
-    pub fn at(&self, index: u32) -> &'a Aabb {
+    pub(crate) fn at(&self, index: u32) -> &'a Aabb {
         self.members[index as usize].bounds_as(self.role)
     }
 
     /// Returns what is known of the surface in the box at an index.
-    pub fn shape(&self, index: u32) -> CasterShape {
+    pub(crate) fn shape(&self, index: u32) -> CasterShape {
         self.members[index as usize].shape
     }
 
     /// Returns the boxes that are not empty, with their indices.
-    pub fn iter(self) -> impl Iterator<Item = (u32, &'a Aabb)> {
+    pub(crate) fn iter(self) -> impl Iterator<Item = (u32, &'a Aabb)> {
         let members = (0u32..).zip(self.members);
         let boxes = members.map(move |(index, member)| (index, member.bounds_as(self.role)));
         boxes.filter(|(_, bounds)| !bounds.is_empty())
@@ -73,7 +73,7 @@ impl<'a> Boxes<'a> {
     /// Calls `meet` with each box that is not empty, except where `enters` returns false for a box
     /// around it. So `enters` may refuse boxes of which no part matters, in the present state. It
     /// must never refuse a box that holds one which `meet` would use.
-    pub fn walk<S>(
+    pub(crate) fn walk<S>(
         &self,
         state: &mut S,
         enters: impl FnMut(&S, &Aabb) -> bool,

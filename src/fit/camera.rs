@@ -134,30 +134,30 @@ pub(crate) struct CameraFrustum {
 impl CameraFrustum {
     /// Returns the depths along the view at which the volume begins and ends, whatever is in it;
     /// the end may be infinite.
-    pub fn depth_range(&self) -> (f64, f64) {
+    pub(crate) fn depth_range(&self) -> (f64, f64) {
         let corners = &self.corners;
         (corners.depth_near, corners.depth_far.min(self.max_distance))
     }
 
     /// Returns whether the image is equally high at all depths.
-    pub fn is_orthographic(&self) -> bool {
+    pub(crate) fn is_orthographic(&self) -> bool {
         let (near, far) = (self.image_height(0.0), self.image_height(1.0));
         (near - far).abs() <= 1e-9 * near
     }
 
     /// Returns the distance limit in world units; infinite if there is no limit.
-    pub fn max_distance(&self) -> f64 {
+    pub(crate) fn max_distance(&self) -> f64 {
         self.max_distance
     }
 
     /// Returns the unit vector along the view.
-    pub fn forward(&self) -> DVec3 {
+    pub(crate) fn forward(&self) -> DVec3 {
         self.forward
     }
 
     /// Returns the world height of the image at a depth along the view. It is infinite where the
     /// image's corners are at infinity, which happens under sufficiently oblique projections.
-    pub fn image_height(&self, depth: f64) -> f64 {
+    pub(crate) fn image_height(&self, depth: f64) -> f64 {
         let [bottom, _, top, _] = self.corners.at(depth);
         let height = bottom.distance(top);
         if height.is_nan() {
@@ -169,7 +169,7 @@ impl CameraFrustum {
 
     /// Returns the ray through a place of the image, from 0 to 1 along x and y: its point at depth
     /// zero, and what a unit of depth along the view adds.
-    pub fn ray(&self, place: DVec2) -> (DVec3, DVec3) {
+    pub(crate) fn ray(&self, place: DVec2) -> (DVec3, DVec3) {
         let at = |depth| {
             let [bottom_left, bottom_right, top_left, top_right] = self.corners.at(depth);
             let bottom = bottom_left.lerp(bottom_right, place.x);
@@ -185,7 +185,7 @@ impl CameraFrustum {
     /// Returns the corners of a rectangle of the image, in the coordinates of
     /// [`ray`](Self::ray), outside of which no ray meets the box. It extends to infinity where part
     /// of the box is behind the camera.
-    pub fn image_rect(&self, bounds: &Aabb) -> (DVec2, DVec2) {
+    pub(crate) fn image_rect(&self, bounds: &Aabb) -> (DVec2, DVec2) {
         /// Is the distance by which the rectangle is larger than the box, for rounding.
         const MARGIN: f64 = 1e-6;
         let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
@@ -204,7 +204,7 @@ impl CameraFrustum {
     }
 
     /// Returns a sphere that holds the slice between two depths along the view.
-    pub fn slice_sphere(&self, depth_near: f64, depth_far: f64) -> SliceSphere {
+    pub(crate) fn slice_sphere(&self, depth_near: f64, depth_far: f64) -> SliceSphere {
         let (center, radius) = self.corners.sphere_in_view(depth_near, depth_far);
         SliceSphere {
             center_render: self.render_from_view.transform_point3(center),
@@ -213,17 +213,17 @@ impl CameraFrustum {
     }
 
     /// Returns the camera's position in render space.
-    pub fn eye(&self) -> DVec3 {
+    pub(crate) fn eye(&self) -> DVec3 {
         self.eye
     }
 
     /// Returns the depth of a point along the view in world units.
-    pub fn depth(&self, point_render: DVec3) -> f64 {
+    pub(crate) fn depth(&self, point_render: DVec3) -> f64 {
         self.forward.dot(point_render - self.eye)
     }
 
     /// Returns the part of the volume between two depths along the view.
-    pub fn slice(&self, depth_near: f64, depth_far: f64) -> HalfSpaces {
+    pub(crate) fn slice(&self, depth_near: f64, depth_far: f64) -> HalfSpaces {
         let mut planes = self.planes;
         let at_eye = self.forward.dot(self.eye);
         planes.push(HalfSpace {

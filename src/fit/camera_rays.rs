@@ -77,7 +77,7 @@ impl CameraRays {
     ///
     /// Boxes look for the rays that may meet them, since there are far fewer rays than pairs of a
     /// ray and a box.
-    pub fn cast<'a, I: Iterator<Item = &'a Aabb>>(
+    pub(super) fn cast<'a, I: Iterator<Item = &'a Aabb>>(
         &mut self,
         camera: &CameraFrustum,
         indices: RangeInclusive<u32>,
@@ -116,7 +116,7 @@ impl CameraRays {
 impl RayHit {
     /// Returns the world side of a square across the light with the area that a pixel covers there.
     /// `toward_light` has unit length.
-    pub fn pixel_across(&self, toward_light: DVec3) -> f64 {
+    pub(super) fn pixel_across(&self, toward_light: DVec3) -> f64 {
         let cosine = |direction: DVec3| match self.normal {
             None => MEAN_COSINE,
             Some(normal) => normal.dot(direction).abs().max(LEAST_COSINE),
@@ -126,7 +126,7 @@ impl RayHit {
     }
 
     /// Returns the factor by which the pixel counts, for the side of the bounds that it is on.
-    pub fn facing(&self, toward_light: DVec3) -> f64 {
+    pub(super) fn facing(&self, toward_light: DVec3) -> f64 {
         match self.normal {
             Some(normal) if normal.dot(toward_light) < 0.0 => AWAY,
             _ => 1.0,

@@ -52,7 +52,7 @@ impl Cascade<'_> {
     /// that both receivers and casters cover. Where rounding makes it doubtful whether a caster
     /// reaches the receivers, it counts as reaching them. The second value is what the bounds
     /// were fitted to. Returns `None` where no caster does.
-    pub fn fit(
+    pub(super) fn fit(
         &self,
         required: &LightBox,
         spacing: Spacing,
@@ -121,7 +121,7 @@ impl Cascade<'_> {
     /// Returns the light-space box of all that visibly shadows receivers in `required`, or `None`
     /// where nothing does. Across the light it is the part inside `window`, which holds `required`.
     /// Its farthest depth means nothing.
-    pub fn shadows(
+    pub(super) fn shadows(
         &self,
         required: &LightBox,
         window: &LightBox,

@@ -57,14 +57,14 @@ pub(crate) struct PartScratch {
 
 impl PartScratch {
     /// Divides no caster.
-    pub fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.parts.clear();
         self.divided.clear();
     }
 
     /// Divides those casters of `candidates` that are large beside all others. `visible` is a
     /// light-space box that holds all receivers of `seen`.
-    pub fn find(
+    pub(super) fn find(
         &mut self,
         candidates: &DirectionalCasters<'_>,
         visible: &LightBox,

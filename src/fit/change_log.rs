@@ -35,13 +35,13 @@ pub(crate) struct ChangedBoxes<'a> {
 impl ChangeLog {
     /// Returns the number of the next change. Where two numbers are equal, nothing changed between
     /// them.
-    pub fn next(&self) -> u64 {
+    pub(crate) fn next(&self) -> u64 {
         self.next
     }
 
     /// Adds the change of a box, or of something else about what is in it where both boxes are
     /// equal. What was empty and remains so is no change.
-    pub fn add(&mut self, index: u32, before: &Aabb, after: &Aabb) {
+    pub(crate) fn add(&mut self, index: u32, before: &Aabb, after: &Aabb) {
         match (before.is_empty(), after.is_empty()) {
             (true, true) => {}
             (true, false) => self.push(index, *after),
@@ -61,7 +61,7 @@ impl ChangeLog {
     }
 
     /// States that any box may have changed.
-    pub fn add_unknown(&mut self) {
+    pub(crate) fn add_unknown(&mut self) {
         // A multiple of the capacity leaves the places of numbers as they are.
         self.next += 2 * CAPACITY as u64;
     }
@@ -77,7 +77,7 @@ impl ChangeLog {
     }
 
     /// Returns the changes from the number `first` on, or `None` where they are no longer known.
-    pub fn since(&self, first: u64) -> Option<ChangedBoxes<'_>> {
+    pub(crate) fn since(&self, first: u64) -> Option<ChangedBoxes<'_>> {
         let count = self.next.checked_sub(first)?;
         if count > CAPACITY as u64 {
             return None;
@@ -94,11 +94,11 @@ impl ChangeLog {
 
 impl<'a> ChangedBoxes<'a> {
     /// Returns whether nothing has changed.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.halves[0].is_empty()
     }
 
-    pub fn iter(&self) -> impl Iterator<Item = &'a ChangedBox> + use<'a> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &'a ChangedBox> + use<'a> {
         let [older, newer] = self.halves;
         older.iter().chain(newer)
     }

@@ -21,7 +21,7 @@ pub(crate) struct HeldVisible {
 impl HeldVisible {
     /// Returns the bounds for a frame that sees `visible`. `held` are those of the frame before, if
     /// the cascade has stayed the same.
-    pub fn following(held: Option<Self>, visible: &SeenBounds) -> Self {
+    pub(super) fn following(held: Option<Self>, visible: &SeenBounds) -> Self {
         let now = Self {
             visible: *visible,
             frames: 0,
@@ -42,7 +42,7 @@ impl HeldVisible {
 
     /// Returns the bounds for a frame that sees the same as the last. Returns `None` where they
     /// become others.
-    pub fn again(self, visible: &SeenBounds) -> Option<Self> {
+    pub(super) fn again(self, visible: &SeenBounds) -> Option<Self> {
         let next = Self::following(Some(self), visible);
         (next.visible == self.visible).then_some(next)
     }

@@ -93,7 +93,7 @@ impl DirectionalFit {
     ///
     /// Returns an error where casters and receivers are so far from the world's origin that f64
     /// does not distinguish their positions.
-    pub fn fit(
+    pub(crate) fn fit(
         &self,
         input: &FitInput<'_>,
         limits: &FitLimits,
@@ -177,7 +177,7 @@ impl DirectionalFit {
     /// Returns the fit for a frame in which nothing differs from the last. Only the time counts for
     /// which extents have been larger than needed. Returns `None` where the whole fit is needed,
     /// because that time is over or a layout is to be chosen.
-    pub fn again(&self) -> Option<Self> {
+    pub(crate) fn again(&self) -> Option<Self> {
         let mut next = self.clone();
         let depths = held_depths(self.visible.as_ref()?, self.held_depths.as_ref());
         next.held_depths = depths.or(self.held_depths);
@@ -205,7 +205,7 @@ impl DirectionalFit {
 
     /// Returns whether the fit may become another, or may have other casters, where these boxes
     /// change. `input` is otherwise that of the last fit.
-    pub fn may_change(&self, input: &FitInput<'_>, changes: ChangedBoxes<'_>) -> bool {
+    pub(crate) fn may_change(&self, input: &FitInput<'_>, changes: ChangedBoxes<'_>) -> bool {
         let (Some(influence), Some(visible)) = (&self.influence, &self.visible) else {
             return true;
         };
@@ -261,12 +261,12 @@ impl DirectionalFit {
     }
 
     /// Returns the layout that was found, where none is given.
-    pub fn layout(&self) -> Option<&Layout> {
+    pub(crate) fn layout(&self) -> Option<&Layout> {
         self.layout.as_ref().map(|held| &held.layout)
     }
 
     /// Returns the error that was predicted for that layout.
-    pub fn predicted_error(&self) -> Option<f64> {
+    pub(crate) fn predicted_error(&self) -> Option<f64> {
         self.layout.map(|held| held.predicted_error)
     }
 
@@ -274,7 +274,7 @@ impl DirectionalFit {
     /// to `drawn`: those of which some part is within the map rectangle, seen along the light, and
     /// in front of the far plane, and that can shadow what is visible or was of late. `scratch` is
     /// the one that the fit has filled.
-    pub fn cull(
+    pub(crate) fn cull(
         &self,
         cascade: usize,
         input: &FitInput<'_>,

@@ -41,7 +41,7 @@ pub(crate) fn light_box_around(space: &LightSpace, spacing: Spacing, around: &Aa
 
 impl<'a> DirectionalCasters<'a> {
     /// Lists the casters that can shadow something, where no tree finds them.
-    pub fn list(
+    pub(super) fn list(
         space: &LightSpace,
         boxes: Boxes<'_>,
         visible: &SeenBounds,
@@ -63,7 +63,7 @@ impl<'a> DirectionalCasters<'a> {
     /// Calls `meet` with each caster, except where `enters` returns false for a box in light space
     /// that surely holds its own, grown as [`Spacing::widest`] does. `enters` may refuse boxes of
     /// which no part matters, in the present state.
-    pub fn walk<S>(
+    pub(super) fn walk<S>(
         &self,
         spacing: Spacing,
         state: &mut S,
@@ -100,7 +100,7 @@ impl<'a> DirectionalCasters<'a> {
     }
 
     /// Returns whether there is any caster.
-    pub fn any(&self, spacing: Spacing) -> bool {
+    pub(super) fn any(&self, spacing: Spacing) -> bool {
         let mut any = false;
         self.walk(spacing, &mut any, |any, _| !any, |any, _, _, _| *any = true);
         any

@@ -55,14 +55,14 @@ impl FitInput<'_> {
     /// Returns four ulps of f32 at the farthest render coordinate of what is covered, up to the
     /// highest receiver: texels finer than receivers' positions would resolve nothing. The height
     /// of a caster above the receivers does not count.
-    pub fn texel_floor(&self, covered: &LightBox, highest_receiver: f64) -> f64 {
+    pub(crate) fn texel_floor(&self, covered: &LightBox, highest_receiver: f64) -> f64 {
         let reach = self.render_reach(covered, highest_receiver);
         4.0 * f64::from(f32::EPSILON) * reach.max(f64::from(f32::MIN_POSITIVE) * 1e8)
     }
 
     /// Returns the farthest render coordinate, along an axis of the light, of what is covered up to
     /// the highest receiver.
-    pub fn render_reach(&self, covered: &LightBox, highest_receiver: f64) -> f64 {
+    pub(crate) fn render_reach(&self, covered: &LightBox, highest_receiver: f64) -> f64 {
         let origin_light = self.space.point(DVec3::ZERO);
         let highest = covered.max.with_z(highest_receiver);
         (covered.min - origin_light)

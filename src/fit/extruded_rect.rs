@@ -32,7 +32,7 @@ struct Side {
 }
 
 impl ExtrudedRect {
-    pub fn new(space: &LightSpace, rect: &MapRect) -> Self {
+    pub(super) fn new(space: &LightSpace, rect: &MapRect) -> Self {
         let LightSpace { axes, origin } = space;
         let half = (rect.max() - rect.min) * 0.5;
         let center = rect.min + half;
@@ -58,7 +58,7 @@ impl ExtrudedRect {
 
     /// Returns whether the box, seen along the light, overlaps the rectangle on all of the
     /// hexagon's normals.
-    pub fn meets(&self, bounds: &Aabb) -> bool {
+    pub(super) fn meets(&self, bounds: &Aabb) -> bool {
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
         let between = (min + max) * 0.5 - self.center_render;
         let half = (max - min) * 0.5;

@@ -56,7 +56,7 @@ pub(crate) struct Slice<'a> {
 
 impl Slice<'_> {
     /// Returns how `rect` covers the slice.
-    pub fn report(
+    pub(super) fn report(
         &self,
         space: &LightSpace,
         rect: &MapRect,

@@ -25,7 +25,7 @@ pub(crate) struct ImageCorners {
 const CORNERS_NDC: [(f64, f64); 4] = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
 
 impl ImageCorners {
-    pub fn new(clip_from_view: &DMat4, forward_view: DVec3) -> Self {
+    pub(super) fn new(clip_from_view: &DMat4, forward_view: DVec3) -> Self {
         let view_from_clip = clip_from_view.inverse();
         let at = |x, y, z| {
             let point = view_from_clip * DVec3::new(x, y, z).extend(1.0);
@@ -63,14 +63,14 @@ impl ImageCorners {
     }
 
     /// Returns the corners at a depth.
-    pub fn at(&self, depth: f64) -> [DVec3; 4] {
+    pub(super) fn at(&self, depth: f64) -> [DVec3; 4] {
         self.rays
             .map(|(start, per_depth)| start + per_depth * depth)
     }
 
     /// Returns centre and radius of the smallest sphere with its centre on the slice's axis that
     /// holds the slice between two depths.
-    pub fn sphere_in_view(&self, depth_near: f64, depth_far: f64) -> (DVec3, f64) {
+    pub(super) fn sphere_in_view(&self, depth_near: f64, depth_far: f64) -> (DVec3, f64) {
         let middle = |corners: &[DVec3; 4]| corners.iter().sum::<DVec3>() * 0.25;
         let (near, far) = (self.at(depth_near), self.at(depth_far));
         let (near_middle, far_middle) = (middle(&near), middle(&far));

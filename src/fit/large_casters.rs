@@ -39,7 +39,7 @@ pub(crate) struct LargestCasters<'a> {
 impl LargestCasters<'_> {
     /// Fills `large` with those casters, at most `limit`, that cover most of `visible` along one
     /// axis, the largest first. Returns what all others cover of it.
-    pub fn find(
+    pub(super) fn find(
         candidates: &DirectionalCasters<'_>,
         visible: &LightBox,
         limit: usize,

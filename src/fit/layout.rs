@@ -30,14 +30,14 @@ pub(crate) struct HeldLayout {
 
 impl HeldLayout {
     /// Returns the layout of the next frame where no prediction is due.
-    pub fn without_prediction(&self) -> Option<Self> {
+    pub(super) fn without_prediction(&self) -> Option<Self> {
         let frames = self.frames + 1;
         (frames < FRAMES_BETWEEN_PREDICTIONS).then_some(Self { frames, ..*self })
     }
 
     /// Returns the layout of the next frame. `predict` is called where a prediction is due; it
     /// returns `None` where no shadow is seen, so that any layout serves as well.
-    pub fn next<'a>(
+    pub(super) fn next<'a>(
         held: Option<&Self>,
         map_size: u32,
         predict: impl FnOnce() -> Option<Prediction<'a>>,

@@ -41,7 +41,7 @@ pub(crate) struct Layout {
 
 impl Layout {
     /// Returns the layout of one cascade.
-    pub fn single(map_size: u32) -> Self {
+    pub(crate) fn single(map_size: u32) -> Self {
         let mut rects = [TexelRect::default(); MAX_CASCADES];
         rects[0] = TexelRect::whole(map_size);
         Self {
@@ -52,7 +52,7 @@ impl Layout {
     }
 
     /// Returns the settings of a light with this layout.
-    pub fn applied(&self, limits: &FitLimits) -> FitLimits {
+    pub(crate) fn applied(&self, limits: &FitLimits) -> FitLimits {
         let ends = std::array::from_fn(|end| f64::from(self.ends[end]) / ZONES as f64);
         FitLimits {
             cascades: self.cascades,
@@ -125,7 +125,7 @@ pub(crate) struct Prediction<'a> {
 
 impl<'a> Prediction<'a> {
     /// Samples the frame; returns `None` without a camera, or where no shadow can be seen.
-    pub fn of(
+    pub(super) fn of(
         sampled: &Sampled<'_>,
         limits: &'a FitLimits,
         visible: &SeenBounds,
@@ -188,7 +188,7 @@ impl<'a> Prediction<'a> {
     ///
     /// From one number of cascades to the next, one of them is divided where that is best. Then
     /// each end is moved by single zones for as long as that helps.
-    pub fn best(&self) -> Layout {
+    pub(super) fn best(&self) -> Layout {
         let mut best = Layout::single(self.limits.map_size);
         let mut least = self.cost(&best);
         let (mut layout, most) = (best, self.limits.cascades.min(ZONES));
@@ -298,7 +298,7 @@ impl<'a> Prediction<'a> {
 
     /// Returns the root of the mean squared error of visibility, over the pixels of the images,
     /// that is predicted for a layout.
-    pub fn error(&self, layout: &Layout) -> f64 {
+    pub(super) fn error(&self, layout: &Layout) -> f64 {
         let covered = self.covered(layout);
         let texels: [_; MAX_CASCADES] = std::array::from_fn(|cascade| {
             let size = covered[cascade].map_or(DVec2::ZERO, |covered| covered.max - covered.min);
@@ -316,7 +316,7 @@ impl<'a> Prediction<'a> {
 
     /// Returns the predicted error with what the number of cascades adds to it, by which layouts
     /// are compared.
-    pub fn cost(&self, layout: &Layout) -> f64 {
+    pub(super) fn cost(&self, layout: &Layout) -> f64 {
         self.error(layout) * ERROR_PER_CASCADE.powi(-(layout.cascades as i32))
     }
 }

@@ -41,7 +41,7 @@ impl Layer {
 
     /// Divides the layer among `needs`, in their order, by the guillotine cuts for which the sum of
     /// their errors is least. Returns `None` where the layer is too small.
-    pub fn divide(&self, needs: &[CascadeNeed]) -> Option<[TexelRect; MAX_CASCADES]> {
+    pub(super) fn divide(&self, needs: &[CascadeNeed]) -> Option<[TexelRect; MAX_CASCADES]> {
         let mut rects = [TexelRect::default(); MAX_CASCADES];
         let whole = TexelRect::whole(self.map_size);
         if needs.len() == 1 {
@@ -102,7 +102,7 @@ impl Layer {
 
     /// Returns the mean along x and y of the world sizes of a texel, in the steps that sizes have,
     /// where `size` world units fill a rectangle.
-    pub fn mean_texel(&self, size: DVec2, texels: UVec2) -> f64 {
+    pub(super) fn mean_texel(&self, size: DVec2, texels: UVec2) -> f64 {
         let usable = texels.as_dvec2() - f64::from(2 * self.margin_texels + 1);
         let texel = (size / usable.max(DVec2::ONE))
             .map(|size| if size > 0.0 { size_step_up(size) } else { 0.0 });

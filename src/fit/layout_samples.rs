@@ -79,7 +79,7 @@ pub(crate) struct Sampled<'a> {
 impl Sampled<'_> {
     /// Replaces `scratch.samples` by those of the points at which rays through the images of
     /// `cameras` meet the bounds of what they see.
-    pub fn take(&self, cameras: &[CameraFrustum], scratch: &mut SampleScratch) {
+    pub(super) fn take(&self, cameras: &[CameraFrustum], scratch: &mut SampleScratch) {
         scratch.samples.clear();
         let rays = (RAYS / (cameras.len() as u32).max(1)).max(16);
         for round in 0..ROUNDS {

@@ -53,7 +53,7 @@ struct LocalRequests {
 impl LocalFit {
     /// Returns the fit for this frame. Each list of `drawn` is filled with the indices of the
     /// casters of one view.
-    pub fn fit(
+    pub(crate) fn fit(
         &self,
         input: &LocalInput<'_>,
         reached: &mut Reached,
@@ -123,7 +123,7 @@ impl LocalFit {
 
     /// Returns the size, in tangents, of what a view has to cover; `None` for a view in which
     /// nothing can cast a shadow.
-    pub fn needed_size(&self, view: usize) -> Option<DVec2> {
+    pub(crate) fn needed_size(&self, view: usize) -> Option<DVec2> {
         self.rects[view]?;
         let (request, _) = self.requests.views[view].as_ref()?;
         Some(request.max - request.min)
@@ -132,7 +132,7 @@ impl LocalFit {
     /// Returns the fit for a frame in which nothing differs from the last. Only the time counts for
     /// which extents have been larger than needed. Returns `None` where that time is over, so that
     /// the whole fit is needed.
-    pub fn again(&self) -> Option<Self> {
+    pub(crate) fn again(&self) -> Option<Self> {
         let mut next = self.clone();
         if let Some(farthest) = self.requests.farthest {
             let held = HeldSize::following(self.held_reach, farthest);
@@ -156,7 +156,7 @@ impl LocalFit {
 
     /// Returns whether the fit may become another, or may have other casters, where these boxes
     /// change. `input` is otherwise that of the last fit.
-    pub fn may_change(&self, input: &LocalInput<'_>, changes: ChangedBoxes<'_>) -> bool {
+    pub(crate) fn may_change(&self, input: &LocalInput<'_>, changes: ChangedBoxes<'_>) -> bool {
         let light = input.position_world - input.origin;
         let (cone, last) = (cone(input, light), (&self.requests.seen, self.reach));
         let mut changes = changes.iter();

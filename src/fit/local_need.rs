@@ -55,7 +55,7 @@ pub(crate) struct ViewNeed {
 
 impl ViewNeed {
     /// Returns the need, or an earlier one that has shrunk since, whichever is larger.
-    pub fn or_shrunk(self, earlier: &Self, factor: f64) -> Self {
+    pub(crate) fn or_shrunk(self, earlier: &Self, factor: f64) -> Self {
         let weight = earlier.weight * factor;
         if weight > self.weight {
             return Self { weight, ..*earlier };
@@ -66,12 +66,12 @@ impl ViewNeed {
 
 impl LocalNeeds {
     /// Counts the points that the cameras see.
-    pub fn points(&self) -> usize {
+    pub(crate) fn points(&self) -> usize {
         self.points.len()
     }
 
     /// Finds what the cameras see of the receivers.
-    pub fn look(&mut self, cameras: &[CameraFrustum], receivers: Receivers<'_>) {
+    pub(crate) fn look(&mut self, cameras: &[CameraFrustum], receivers: Receivers<'_>) {
         let Self {
             points,
             mean_height,
@@ -93,14 +93,14 @@ impl LocalNeeds {
     }
 
     /// Returns whether a camera sees anything on which a light may shine.
-    pub fn any_within(&self, position: DVec3, range: f64) -> bool {
+    pub(crate) fn any_within(&self, position: DVec3, range: f64) -> bool {
         let mut points = self.points.iter();
         points.any(|point| point.render.distance_squared(position) < range * range)
     }
 
     /// Returns what is seen of the receivers of each view of a light, given the casters that it
     /// reaches.
-    pub fn of(
+    pub(crate) fn of(
         &self,
         light: &LightShape<'_>,
         casters: &[ReachedCaster],

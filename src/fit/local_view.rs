@@ -22,7 +22,7 @@ impl ViewFrame<'_> {
     /// share none. Where lookups reach around their receiver, casters alone decide.
     ///
     /// The candidates of `reached` are then the casters that may be in the view.
-    pub fn needed(
+    pub(super) fn needed(
         &self,
         input: &LocalInput<'_>,
         index: usize,
@@ -56,7 +56,7 @@ impl ViewFrame<'_> {
     }
 
     /// Returns the pyramid over a rectangle of tangents, cut off at `nearest` along the axis.
-    pub fn region(&self, min: DVec2, max: DVec2, nearest: f64) -> HalfSpaces {
+    pub(super) fn region(&self, min: DVec2, max: DVec2, nearest: f64) -> HalfSpaces {
         let (right, up, forward) = (self.axes.right(), self.axes.up(), -self.axes.toward_light());
         let mut region = HalfSpaces::default();
         // The near side comes first: it rejects half of all boxes.
@@ -124,7 +124,12 @@ impl ViewFrame<'_> {
     /// Returns a distance along the axis of the part of a box within the region, or `None` where no
     /// part is: the least one if that is below `enough`, and otherwise any that is not below
     /// `enough` either.
-    pub fn nearest_within(&self, region: &HalfSpaces, bounds: &Aabb, enough: f64) -> Option<f64> {
+    pub(super) fn nearest_within(
+        &self,
+        region: &HalfSpaces,
+        bounds: &Aabb,
+        enough: f64,
+    ) -> Option<f64> {
         match region.relation(bounds) {
             Relation::Outside => None,
             Relation::Inside => Some(self.span(bounds).nearest),

@@ -45,7 +45,7 @@ pub(crate) struct MapRect {
 
 impl MapRect {
     /// Returns the greatest x and y.
-    pub fn max(&self) -> DVec2 {
+    pub(crate) fn max(&self) -> DVec2 {
         self.min + self.texel * self.size_texels.as_dvec2()
     }
 }
@@ -61,7 +61,7 @@ pub(crate) struct HeldRect {
 impl HeldRect {
     /// Returns the rectangle for `request`. The `held` one is kept, on each axis by itself, as long
     /// as it satisfies the request, so that small motions of a camera change nothing.
-    pub fn fit(request: &MapRectRequest, held: Option<&Self>) -> Self {
+    pub(super) fn fit(request: &MapRectRequest, held: Option<&Self>) -> Self {
         let held = held.filter(|held| held.rect.size_texels == request.size_texels);
         let (min_x, texel_x, held_x) = fit_axis(request, held, 0);
         let (min_y, texel_y, held_y) = fit_axis(request, held, 1);
@@ -131,7 +131,7 @@ pub(crate) struct HeldDepth {
 
 impl HeldDepth {
     /// Returns a range that holds `far..near` and is at least `least` deep.
-    pub fn fit(far: f64, near: f64, least: f64, held: Option<&Self>) -> Self {
+    pub(super) fn fit(far: f64, near: f64, least: f64, held: Option<&Self>) -> Self {
         // The range has one step behind the deepest receiver, so that rounding never puts it behind
         // the far plane, and two for snapping.
         let needed = (near - far).max(least) * DEPTH_STEPS / (DEPTH_STEPS - 4.0);
@@ -154,7 +154,7 @@ impl HeldDepth {
 
 impl DepthRange {
     /// Returns the world units from the far to the near plane.
-    pub fn length(&self) -> f64 {
+    pub(crate) fn length(&self) -> f64 {
         self.near - self.far
     }
 }
@@ -192,7 +192,7 @@ pub(crate) struct BoundsRequest {
 impl HeldBounds {
     /// Returns the hysteresis after a frame with the same request. Returns `None` where the bounds
     /// themselves change, because they were larger than needed for long enough.
-    pub fn again(&self, request: &BoundsRequest) -> Option<Self> {
+    pub(super) fn again(&self, request: &BoundsRequest) -> Option<Self> {
         let depth =
             |near| HeldDepth::fit(request.far, near, request.least_depth, Some(&self.depth));
         let next = Self {
@@ -204,7 +204,7 @@ impl HeldBounds {
     }
 
     /// Returns the bounds that are held.
-    pub fn bounds(&self) -> LightSpaceBounds {
+    pub(super) fn bounds(&self) -> LightSpaceBounds {
         LightSpaceBounds {
             rect: self.rect.rect,
             depth: self.depth.depth,
@@ -214,12 +214,12 @@ impl HeldBounds {
 
 impl LightSpaceBounds {
     /// Returns whether geometry in `bounds` can cast into this map.
-    pub fn holds_part_of(&self, bounds: &LightBox) -> bool {
+    pub(crate) fn holds_part_of(&self, bounds: &LightBox) -> bool {
         self.bounds().overlaps_xy(bounds) && bounds.max.z > self.depth.far
     }
 
     /// Returns the box that the view covers.
-    pub fn bounds(&self) -> LightBox {
+    pub(crate) fn bounds(&self) -> LightBox {
         LightBox {
             min: self.rect.min.extend(self.depth.far),
             max: self.rect.max().extend(self.depth.near),

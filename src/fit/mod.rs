@@ -87,7 +87,7 @@ mod view;
 mod view_rounding;
 mod visible;
 
-pub use axes::LightAxes;
+pub(crate) use axes::LightAxes;
 pub(crate) use axes::{LightBox, LightSpace};
 pub(crate) use bounds_tree::BoundsTree;
 pub(crate) use boxes::{Boxes, CasterBox, Role};

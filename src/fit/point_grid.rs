@@ -17,7 +17,7 @@ pub(crate) struct PointGrid {
 
 impl PointGrid {
     /// Replaces the points, which must be finite.
-    pub fn fill(&mut self, points: impl Iterator<Item = DVec2> + Clone) {
+    pub(super) fn fill(&mut self, points: impl Iterator<Item = DVec2> + Clone) {
         let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for point in points.clone() {
             (min, max) = (min.min(point), max.max(point));
@@ -50,7 +50,7 @@ impl PointGrid {
 
     /// Returns the indices of all points in a rectangle, and of some that are near it. The corners
     /// may be infinite.
-    pub fn near(&self, min: DVec2, max: DVec2) -> impl Iterator<Item = usize> + '_ {
+    pub(super) fn near(&self, min: DVec2, max: DVec2) -> impl Iterator<Item = usize> + '_ {
         let (low, high) = (self.cell(min), self.cell(max));
         let rows = low[1]..=high[1];
         rows.flat_map(move |row| {

@@ -69,7 +69,7 @@ impl Reach {
 
 impl Reached {
     /// Fills the lists from `input`, for a light at `light` in render space.
-    pub fn find(&mut self, input: &LocalInput<'_>, light: DVec3, reach: f64) {
+    pub(crate) fn find(&mut self, input: &LocalInput<'_>, light: DVec3, reach: f64) {
         let within = Reach::new(light, reach);
         let near = |bounds: &Aabb| within.part(bounds);
         self.casters.clear();
@@ -107,19 +107,19 @@ impl Reached {
     }
 
     /// Finds the casters that may be in a region.
-    pub fn find_candidates(&mut self, region: &HalfSpaces, light: DVec3) {
+    pub(crate) fn find_candidates(&mut self, region: &HalfSpaces, light: DVec3) {
         let found = &mut self.candidates;
         self.caster_boxes.find_in(region, light, found);
     }
 
     /// Returns the casters that were found last.
-    pub fn candidates(&self) -> impl Iterator<Item = &ReachedCaster> + Clone {
+    pub(crate) fn candidates(&self) -> impl Iterator<Item = &ReachedCaster> + Clone {
         let found = self.candidates.iter();
         found.map(|&number| &self.casters[number as usize])
     }
 
     /// Returns the receivers that may be in a region.
-    pub fn receivers_in(
+    pub(crate) fn receivers_in(
         &mut self,
         region: &HalfSpaces,
         light: DVec3,
@@ -131,7 +131,7 @@ impl Reached {
     }
 
     /// Returns the least distance from the light at which a near plane of these casters can be.
-    pub fn nearest(&self) -> f64 {
+    pub(crate) fn nearest(&self) -> f64 {
         let each = self.casters.iter().map(|caster| caster.nearest);
         each.fold(f64::INFINITY, f64::min)
     }

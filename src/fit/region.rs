@@ -122,7 +122,7 @@ impl Extent {
 
 impl HalfSpaces {
     /// Returns the inside of a box.
-    pub fn of_box(bounds: &Aabb) -> Self {
+    pub(crate) fn of_box(bounds: &Aabb) -> Self {
         let mut planes = Self::default();
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
         for (axis, normal) in [DVec3::X, DVec3::Y, DVec3::Z].into_iter().enumerate() {
@@ -138,18 +138,18 @@ impl HalfSpaces {
         planes
     }
 
-    pub fn push(&mut self, plane: HalfSpace) {
+    pub(crate) fn push(&mut self, plane: HalfSpace) {
         self.planes[self.count] = plane;
         self.count += 1;
     }
 
-    pub fn as_slice(&self) -> &[HalfSpace] {
+    pub(crate) fn as_slice(&self) -> &[HalfSpace] {
         &self.planes[..self.count]
     }
 
     /// Returns how `bounds` (not empty) relates to the region. A box near an edge of the region may
     /// count as across although it is outside.
-    pub fn relation(&self, bounds: &Aabb) -> Relation {
+    pub(crate) fn relation(&self, bounds: &Aabb) -> Relation {
         let center = (bounds.min.as_dvec3() + bounds.max.as_dvec3()) * 0.5;
         let half = (bounds.max.as_dvec3() - bounds.min.as_dvec3()) * 0.5;
         let mut relation = Relation::Inside;
@@ -167,7 +167,7 @@ impl HalfSpaces {
     }
 
     /// Returns whether a point is in the region.
-    pub fn holds(&self, point: DVec3) -> bool {
+    pub(crate) fn holds(&self, point: DVec3) -> bool {
         self.as_slice()
             .iter()
             .all(|plane| plane.distance(point) >= 0.0)
@@ -175,7 +175,7 @@ impl HalfSpaces {
 
     /// Returns whether the region surely has nothing of `around`, nor of any box in it as
     /// [`relation`](Self::relation) judges that one, whatever the rounding.
-    pub fn surely_misses(&self, around: &Aabb) -> bool {
+    pub(crate) fn surely_misses(&self, around: &Aabb) -> bool {
         let extent = Extent::new(around);
         let mut planes = self.as_slice().iter();
         planes.any(|plane| extent.distance(plane) < -extent.reach(plane) - extent.slack(plane))
@@ -196,7 +196,7 @@ impl HalfSpaces {
 
     /// Calls `visit` with points whose convex hull is the region's intersection with `bounds`
     /// (never fewer; duplicates are possible). An empty intersection makes no call.
-    pub fn visit_vertices(&self, bounds: &Aabb, mut visit: impl FnMut(DVec3)) {
+    pub(crate) fn visit_vertices(&self, bounds: &Aabb, mut visit: impl FnMut(DVec3)) {
         if bounds.is_empty() {
             return;
         }

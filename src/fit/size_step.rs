@@ -61,7 +61,7 @@ pub(crate) struct HeldSize {
 impl HeldSize {
     /// Returns a held size without history, at the smallest step that is at least `size` (positive
     /// and finite).
-    pub fn new(size: f64) -> Self {
+    pub(super) fn new(size: f64) -> Self {
         Self {
             step: size_step_up(size),
             peak: size,
@@ -71,12 +71,12 @@ impl HeldSize {
     }
 
     /// Returns the size step.
-    pub fn step(&self) -> f64 {
+    pub(super) fn step(&self) -> f64 {
         self.step
     }
 
     /// Returns the held size of the next frame, which needs `size`.
-    pub fn next(self, size: f64) -> Self {
+    pub(super) fn next(self, size: f64) -> Self {
         if size > self.step {
             let grew_lately = self.since_growth < SHRINK_FRAMES;
             return Self {
@@ -130,7 +130,7 @@ impl HeldSize {
 
     /// Returns the held size of a frame that needs `size`. `held` is that of the frame before, if
     /// there was one.
-    pub fn following(held: Option<Self>, size: f64) -> Self {
+    pub(super) fn following(held: Option<Self>, size: f64) -> Self {
         held.map_or_else(|| Self::new(size), |held| held.next(size))
     }
 }

@@ -40,7 +40,7 @@ pub(crate) struct Spacing {
 impl Spacing {
     /// Returns the spacing for what is inside `required`, in a render space that begins at
     /// `origin`.
-    pub fn around(origin: DVec3, required: &LightBox) -> Self {
+    pub(super) fn around(origin: DVec3, required: &LightBox) -> Self {
         // The origin counts by itself, since it is added to render coordinates to get world
         // coordinates.
         Self {
@@ -53,30 +53,30 @@ impl Spacing {
     }
 
     /// Returns by how much computed light coordinates may be off, in world units.
-    pub fn error(self) -> f64 {
+    pub(super) fn error(self) -> f64 {
         ERROR_STEPS * self.step()
     }
 
     /// Returns a box in light space, grown by all that its sides may be off, for the position of
     /// the map rectangle and for their own.
-    pub fn widest(self, bounds: &LightBox) -> LightBox {
+    pub(super) fn widest(self, bounds: &LightBox) -> LightBox {
         bounds.grown(self.error() + ERROR_STEPS * f64::EPSILON * bounds.reach())
     }
 
     /// Returns the finest texel that a map rectangle can be made of.
-    pub fn finest_texel(self) -> f64 {
+    pub(super) fn finest_texel(self) -> f64 {
         STEPS_PER_TEXEL * self.step()
     }
 
     /// Returns the least depth range of which a 64th, the room behind the deepest receiver, is no
     /// less than the error.
-    pub fn least_depth(self) -> f64 {
+    pub(super) fn least_depth(self) -> f64 {
         64.0 * self.error()
     }
 
     /// Returns what a map rectangle must be requested to cover so that it covers `min..max` in
     /// spite of the error, where that is more than the border of the map allows for anyway.
-    pub fn grown(
+    pub(super) fn grown(
         self,
         (min, max): (DVec2, DVec2),
         size_texels: UVec2,
@@ -98,7 +98,7 @@ impl Spacing {
     /// units, or for `texel_floor`, the finest texel that render space can resolve, where that is
     /// coarser. `distance` is from the render origin, for the error. `extent` is called only where
     /// the floor does not settle the matter, as it does for all but astronomical coordinates.
-    pub fn checked(
+    pub(super) fn checked(
         self,
         extent: impl FnOnce() -> f64,
         map_size: u32,

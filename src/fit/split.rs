@@ -94,7 +94,7 @@ impl CascadeSplit<'_> {
 impl SplitRule {
     /// Returns the depth at which cascade `index` of `count` begins (`index == count` is the far
     /// end).
-    pub fn depth(self, index: usize, count: usize, near: f64, far: f64) -> f64 {
+    pub(crate) fn depth(self, index: usize, count: usize, near: f64, far: f64) -> f64 {
         if index == 0 {
             return near;
         }

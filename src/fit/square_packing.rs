@@ -26,7 +26,7 @@ impl Square {
 
     /// Returns the texels of the square in a layer of `map_size` texels a side. Squares that are
     /// apart have no texel in common, whether the side can be halved or not.
-    pub fn texels(&self, map_size: u32) -> TexelRect {
+    pub(crate) fn texels(&self, map_size: u32) -> TexelRect {
         let start = |place: u32| ((u64::from(place) * u64::from(map_size)) >> self.level) as u32;
         TexelRect {
             min: UVec2::new(start(self.place.x), start(self.place.y)),
@@ -45,7 +45,7 @@ impl Square {
     }
 
     /// Returns the first square of a finer level within this one.
-    pub fn first_part(&self, level: u32) -> Self {
+    pub(crate) fn first_part(&self, level: u32) -> Self {
         Self {
             level,
             place: self.place << (level - self.level),
@@ -96,19 +96,19 @@ struct Candidate {
 
 impl Packing {
     /// Makes an empty layer for so many views.
-    pub fn new(views: usize) -> Self {
+    pub(crate) fn new(views: usize) -> Self {
         Self {
             squares: vec![None; views],
         }
     }
 
     /// Returns the square of a view.
-    pub fn square(&self, view: usize) -> Option<Square> {
+    pub(crate) fn square(&self, view: usize) -> Option<Square> {
         self.squares[view]
     }
 
     /// Sets the square of a view, which must have no part in common with those of other views.
-    pub fn set(&mut self, view: usize, square: Option<Square>) {
+    pub(crate) fn set(&mut self, view: usize, square: Option<Square>) {
         self.squares[view] = square;
     }
 
@@ -116,7 +116,7 @@ impl Packing {
     /// at most `most_moved` moves of smaller squares. `hold` tells what may happen to the square of
     /// a view; those of `level` or larger never move. Returns the views that have lost their
     /// squares, or `None`, with nothing changed, where there is no such place.
-    pub fn place(
+    pub(crate) fn place(
         &mut self,
         view: usize,
         level: u32,

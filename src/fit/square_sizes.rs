@@ -60,12 +60,12 @@ pub(crate) struct SquareSizes {
 
 impl SquareSizes {
     /// Returns the level of a view.
-    pub fn level(&self, view: usize) -> Option<u32> {
+    pub(crate) fn level(&self, view: usize) -> Option<u32> {
         self.levels.get(view).copied().flatten()
     }
 
     /// Discards the level of a view.
-    pub fn release(&mut self, view: usize) {
+    pub(crate) fn release(&mut self, view: usize) {
         if let Some(level) = self.levels.get_mut(view) {
             *level = None;
         }
@@ -74,7 +74,7 @@ impl SquareSizes {
     /// Chooses sizes for all views that want some. The sizes of before are kept unless others are
     /// clearly better, or no longer fit. `finest` is the finest level; as many squares of it as
     /// there are views fit into the layer.
-    pub fn choose(&mut self, wanted: &[Option<Wanted>], finest: u32) {
+    pub(crate) fn choose(&mut self, wanted: &[Option<Wanted>], finest: u32) {
         self.levels.resize(wanted.len(), None);
         let views = wanted.iter().zip(&self.levels).map(|(wanted, held)| {
             let share = wanted.as_ref().map(Wanted::share)?;
@@ -106,7 +106,7 @@ impl SquareSizes {
 
     /// Gives all views that want a square squares of one size. They grow when there has been room
     /// for it as often as other sizes must be better.
-    pub fn share_equally(&mut self, wanted: &[Option<Wanted>], finest: u32) {
+    pub(crate) fn share_equally(&mut self, wanted: &[Option<Wanted>], finest: u32) {
         let count = wanted.iter().flatten().count() as u64;
         let fits = |level: &u32| count <= 1 << (2 * level);
         let coarsest = (0..finest).find(fits).unwrap_or(finest);

@@ -24,7 +24,7 @@ pub(crate) struct SeenReceiver {
 
 impl SeenReceiver {
     /// Returns a receiver that counts as a whole.
-    pub fn whole(bounds: &Aabb, caster: Option<u32>) -> Self {
+    pub(super) fn whole(bounds: &Aabb, caster: Option<u32>) -> Self {
         Self {
             bounds: *bounds,
             min: bounds.min.as_dvec3(),
@@ -35,7 +35,7 @@ impl SeenReceiver {
 
     /// Returns the part of that side of the bounds, across `axis`, that faces the light; `None`
     /// where no side does or nothing of it counts.
-    pub fn lit_side(&self, axis: usize, toward_light: DVec3) -> Option<(DVec3, DVec3)> {
+    pub(super) fn lit_side(&self, axis: usize, toward_light: DVec3) -> Option<(DVec3, DVec3)> {
         let (mut min, mut max) = (self.min, self.max);
         if toward_light[axis] > 0.0 && max[axis] == f64::from(self.bounds.max[axis]) {
             min[axis] = max[axis];
@@ -64,7 +64,7 @@ pub(crate) struct Seen {
 
 impl Seen {
     /// Returns the bounds of the whole receiver, if the camera at `index` sees something of it.
-    pub fn bounds_of(&self, index: usize) -> Option<&Aabb> {
+    pub(super) fn bounds_of(&self, index: usize) -> Option<&Aabb> {
         (self.camera == index).then_some(&self.bounds)
     }
 
@@ -89,7 +89,7 @@ pub(crate) struct SeenBounds {
 }
 
 impl SeenBounds {
-    pub const NOTHING: Self = Self {
+    pub(super) const NOTHING: Self = Self {
         render_min: DVec3::INFINITY,
         render_max: DVec3::NEG_INFINITY,
         depth_near: f64::INFINITY,
@@ -97,7 +97,7 @@ impl SeenBounds {
     };
 
     /// Returns the bounds of some boxes as a whole, with no depths along a view.
-    pub fn of_boxes<'a>(boxes: impl IntoIterator<Item = &'a Aabb>) -> Self {
+    pub(super) fn of_boxes<'a>(boxes: impl IntoIterator<Item = &'a Aabb>) -> Self {
         let mut all = Self::NOTHING;
         for bounds in boxes.into_iter().filter(|bounds| !bounds.is_empty()) {
             all.render_min = all.render_min.min(bounds.min.as_dvec3());
@@ -111,7 +111,7 @@ impl SeenBounds {
     /// must reach beyond the receivers' near end in the light's direction. A flat floor under
     /// everything else fails this (it reaches just as far as the lowest receiver: itself), and
     /// neither widens the light-space bounds nor is drawn.
-    pub fn can_be_shadowed_by(&self, caster: &Aabb, toward_light: DVec3) -> bool {
+    pub(super) fn can_be_shadowed_by(&self, caster: &Aabb, toward_light: DVec3) -> bool {
         let (low, high) = (caster.min.as_dvec3(), caster.max.as_dvec3());
         (0..3).all(|axis| {
             let toward = toward_light[axis];
@@ -126,7 +126,7 @@ impl SeenBounds {
     }
 
     /// Returns the bounds of what is in either of two.
-    pub fn union(&self, other: &Self) -> Self {
+    pub(super) fn union(&self, other: &Self) -> Self {
         Self {
             render_min: self.render_min.min(other.render_min),
             render_max: self.render_max.max(other.render_max),
@@ -155,7 +155,7 @@ pub(crate) struct Receivers<'a> {
 impl<'a> Receivers<'a> {
     /// Calls `meet` with the bounds of each receiver and the index of the caster whose surface it
     /// is, if it is one's, as [`Boxes::walk`] does.
-    pub fn walk<S>(
+    pub(crate) fn walk<S>(
         &self,
         state: &mut S,
         enters: impl FnMut(&S, &Aabb) -> bool,
@@ -170,7 +170,7 @@ impl<'a> Receivers<'a> {
     }
 
     /// Returns the bounds that are not empty, with the casters whose surfaces they are.
-    pub fn iter(&self) -> impl Iterator<Item = (&'a Aabb, Option<u32>)> + use<'a> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (&'a Aabb, Option<u32>)> + use<'a> {
         let given = self.given.iter().filter(|bounds| !bounds.is_empty());
         let casters = self.casters.iter();
         let casters = casters.map(|(index, bounds)| (bounds, Some(index)));
@@ -190,7 +190,11 @@ pub(crate) struct SeenLists {
 impl SeenLists {
     /// Fills the lists with the receivers that each of the cameras sees a part of, and returns the
     /// bounds of what they see together.
-    pub fn find(&mut self, cameras: &[CameraFrustum], receivers: Receivers<'_>) -> SeenBounds {
+    pub(super) fn find(
+        &mut self,
+        cameras: &[CameraFrustum],
+        receivers: Receivers<'_>,
+    ) -> SeenBounds {
         self.seen.clear();
         self.parts.clear();
         let mut all = SeenBounds::NOTHING;
@@ -201,7 +205,7 @@ impl SeenLists {
     }
 
     /// Fills the lists with all of the receivers, seen by no camera.
-    pub fn set_whole(&mut self, receivers: Receivers<'_>) {
+    pub(super) fn set_whole(&mut self, receivers: Receivers<'_>) {
         self.seen.clear();
         self.parts.clear();
         let whole = receivers.iter();

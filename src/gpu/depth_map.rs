@@ -16,7 +16,7 @@ pub(crate) struct DepthMap {
 impl DepthMap {
     /// Makes a map of `size` texels per side with `layers` layers. `field` is the path of the size
     /// in the caller's descriptor.
-    pub fn new(
+    pub(crate) fn new(
         device: &wgpu::Device,
         label: &str,
         field: &'static str,
@@ -95,20 +95,20 @@ impl DepthMap {
         })
     }
 
-    pub fn texture(&self) -> &wgpu::Texture {
+    pub(crate) fn texture(&self) -> &wgpu::Texture {
         &self.texture
     }
 
-    pub fn array_view(&self) -> &wgpu::TextureView {
+    pub(crate) fn array_view(&self) -> &wgpu::TextureView {
         &self.array_view
     }
 
-    pub fn layer_view(&self, layer: u32) -> &wgpu::TextureView {
+    pub(crate) fn layer_view(&self, layer: u32) -> &wgpu::TextureView {
         &self.layer_views[layer as usize]
     }
 
     /// Returns one layer as the source or target of a copy of [`DepthMap::layer_extent`].
-    pub fn layer_copy(&self, layer: u32) -> wgpu::TexelCopyTextureInfo<'_> {
+    pub(crate) fn layer_copy(&self, layer: u32) -> wgpu::TexelCopyTextureInfo<'_> {
         wgpu::TexelCopyTextureInfo {
             texture: &self.texture,
             mip_level: 0,
@@ -121,7 +121,7 @@ impl DepthMap {
         }
     }
 
-    pub fn layer_extent(&self) -> wgpu::Extent3d {
+    pub(crate) fn layer_extent(&self) -> wgpu::Extent3d {
         wgpu::Extent3d {
             width: self.size(),
             height: self.size(),
@@ -129,16 +129,16 @@ impl DepthMap {
         }
     }
 
-    pub fn size(&self) -> u32 {
+    pub(crate) fn size(&self) -> u32 {
         self.texture.width()
     }
 
-    pub fn format(&self) -> DepthFormat {
+    pub(crate) fn format(&self) -> DepthFormat {
         self.format
     }
 
     /// Returns the device memory of all layers in bytes.
-    pub fn bytes(&self) -> u64 {
+    pub(crate) fn bytes(&self) -> u64 {
         bytes(
             self.size(),
             self.texture.depth_or_array_layers(),

@@ -11,7 +11,11 @@ pub(crate) struct Need {
 }
 
 impl Need {
-    pub fn new(limit: &'static str, needed: impl Into<u64>, maximum: impl Into<u64>) -> Self {
+    pub(crate) fn new(
+        limit: &'static str,
+        needed: impl Into<u64>,
+        maximum: impl Into<u64>,
+    ) -> Self {
         Self {
             limit,
             needed: needed.into(),
@@ -20,7 +24,7 @@ impl Need {
     }
 
     /// Returns the first of `needs` that the device does not meet.
-    pub fn first_unmet(needs: impl IntoIterator<Item = Self>) -> Option<Self> {
+    pub(crate) fn first_unmet(needs: impl IntoIterator<Item = Self>) -> Option<Self> {
         needs.into_iter().find(|need| need.needed > need.maximum)
     }
 }

@@ -26,7 +26,7 @@ pub(crate) struct StagedUploads {
 
 impl UploadBuffer {
     /// Makes a zeroed buffer of `size` bytes.
-    pub fn new(device: &wgpu::Device, label: &str, size: u64) -> Result<Self, ShadowError> {
+    pub(crate) fn new(device: &wgpu::Device, label: &str, size: u64) -> Result<Self, ShadowError> {
         capture_device_errors(device, || {
             device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
@@ -42,18 +42,18 @@ impl UploadBuffer {
         .map_err(|refusal| refused("a uniform buffer", refusal))
     }
 
-    pub fn buffer(&self) -> &wgpu::Buffer {
+    pub(crate) fn buffer(&self) -> &wgpu::Buffer {
         &self.buffer
     }
 
     /// Returns the upload of `bytes` (at most the buffer's size). Returns `None` where the buffer
     /// holds them already or there are none.
-    pub fn upload<'a>(&'a self, bytes: &'a [u8]) -> Option<Upload<'a>> {
+    pub(crate) fn upload<'a>(&'a self, bytes: &'a [u8]) -> Option<Upload<'a>> {
         (self.written != bytes && !bytes.is_empty()).then_some((&self.buffer, bytes))
     }
 
     /// States that the upload of `bytes`, if there was one, has been recorded.
-    pub fn set_written(&mut self, bytes: &[u8]) {
+    pub(crate) fn set_written(&mut self, bytes: &[u8]) {
         if !bytes.is_empty() {
             self.written.clear();
             self.written.extend_from_slice(bytes);
@@ -61,7 +61,7 @@ impl UploadBuffer {
     }
 
     /// Forgets what was written: the next bytes are copied whatever they are.
-    pub fn invalidate(&mut self) {
+    pub(crate) fn invalidate(&mut self) {
         self.written.clear();
     }
 }
@@ -69,7 +69,7 @@ impl UploadBuffer {
 impl StagedUploads {
     /// Puts the bytes of all uploads on the device, in as few buffers as possible: making one costs
     /// far more than filling it.
-    pub fn new(device: &wgpu::Device, uploads: &[Upload<'_>]) -> Result<Self, ShadowError> {
+    pub(crate) fn new(device: &wgpu::Device, uploads: &[Upload<'_>]) -> Result<Self, ShadowError> {
         let usage = wgpu::BufferUsages::MAP_WRITE | wgpu::BufferUsages::COPY_SRC;
         let most_bytes = device.limits().max_buffer_size;
         let groups = Groups {
@@ -88,12 +88,12 @@ impl StagedUploads {
     }
 
     /// Returns whether anything was made on the device.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.buffers.is_empty()
     }
 
     /// Records the copies. `uploads` are those that were staged.
-    pub fn commit(self, encoder: &mut wgpu::CommandEncoder, uploads: &[Upload<'_>]) {
+    pub(crate) fn commit(self, encoder: &mut wgpu::CommandEncoder, uploads: &[Upload<'_>]) {
         let groups = Groups {
             uploads,
             most_bytes: self.most_bytes,

@@ -83,14 +83,14 @@ pub(crate) struct LocalPlacement {
 
 impl LocalPlacement {
     /// Returns the number of one of its views among those of all lights.
-    pub fn view(&self, view: usize) -> usize {
+    pub(crate) fn view(&self, view: usize) -> usize {
         (self.slot * self.view_count) as usize + view
     }
 }
 
 impl LocalLights {
     /// Makes the maps, and a slot for each of their lights.
-    pub fn new(
+    pub(super) fn new(
         device: &wgpu::Device,
         descriptor: &ShadowMapsDescriptor<'_>,
     ) -> Result<Self, ShadowError> {
@@ -122,17 +122,17 @@ impl LocalLights {
     }
 
     /// Returns the maps of all lights.
-    pub fn maps(&self) -> &ShadowMaps {
+    pub(super) fn maps(&self) -> &ShadowMaps {
         &self.maps
     }
 
     /// Declares the contents of the maps invalid, so that the next frame draws every view.
-    pub fn invalidate(&mut self) {
+    pub(super) fn invalidate(&mut self) {
         self.maps.invalidate();
     }
 
     /// Discards the extents of earlier frames.
-    pub fn reset_history(&mut self) {
+    pub(super) fn reset_history(&mut self) {
         self.last_frame = None;
         for slot in &mut self.slots {
             slot.fit = LocalFit::default();
@@ -143,7 +143,7 @@ impl LocalLights {
     }
 
     /// Resets the state of a slot, whose next light then has no map until it is drawn.
-    pub fn reset(&mut self, slot: u32) {
+    pub(super) fn reset(&mut self, slot: u32) {
         self.last_frame = None;
         self.slots[slot as usize] = SlotState::default();
         if let Some(layer) = &mut self.pool_layer {
@@ -157,7 +157,7 @@ impl LocalLights {
 
     /// Fits and culls `lights`, uploads their uniforms and records their depth passes. `max_views`
     /// is the largest number of views to render; `None` sets no limit.
-    pub fn record(
+    pub(super) fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         frame: &ShadowFrame<'_>,

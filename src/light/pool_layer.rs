@@ -57,7 +57,7 @@ pub(crate) struct Placed {
 
 impl PoolLayer {
     /// Makes an empty layer for so many views; `None` where it has not a texel for each.
-    pub fn new(map_size: u32, views: usize) -> Option<Self> {
+    pub(super) fn new(map_size: u32, views: usize) -> Option<Self> {
         let room = |level: &u32| 1u64 << (2 * level) >= views as u64;
         let needed = (0..32).find(room)?;
         if side_texels(map_size, needed) == 0 {
@@ -78,7 +78,7 @@ impl PoolLayer {
         })
     }
 
-    pub fn map_size(&self) -> u32 {
+    pub(super) fn map_size(&self) -> u32 {
         self.map_size
     }
 
@@ -89,18 +89,18 @@ impl PoolLayer {
     }
 
     /// Returns the number of texels per side that a view is to have.
-    pub fn side(&self, view: usize) -> u32 {
+    pub(super) fn side(&self, view: usize) -> u32 {
         side_texels(self.map_size, self.level(view))
     }
 
     /// Returns the texels of a view, if it has as many as it is to have.
-    pub fn texels(&self, view: usize) -> Option<TexelRect> {
+    pub(super) fn texels(&self, view: usize) -> Option<TexelRect> {
         let square = self.packing.square(view)?;
         (square.level == self.level(view)).then(|| square.texels(self.map_size))
     }
 
     /// Takes the texels of a view for others.
-    pub fn release(&mut self, view: usize) {
+    pub(super) fn release(&mut self, view: usize) {
         self.packing.set(view, None);
         self.interim[view] = None;
         self.needs[view] = ViewNeed::default();
@@ -109,7 +109,7 @@ impl PoolLayer {
     }
 
     /// Discards what was seen in earlier frames.
-    pub fn reset_history(&mut self) {
+    pub(super) fn reset_history(&mut self) {
         self.needs.fill(ViewNeed::default());
         self.frames = FRAMES_BETWEEN_PREDICTIONS;
         self.settled = false;
@@ -117,7 +117,7 @@ impl PoolLayer {
 
     /// Counts a frame for which the lights are fitted anew, and returns whether a prediction is
     /// due.
-    pub fn count_frame(&mut self) -> bool {
+    pub(super) fn count_frame(&mut self) -> bool {
         self.settled = false;
         self.frames += 1;
         self.frames >= FRAMES_BETWEEN_PREDICTIONS
@@ -125,24 +125,29 @@ impl PoolLayer {
 
     /// Returns whether the next frame can leave all sizes as they are without a prediction: none is
     /// due, or nothing has changed since the last one, which would have the same result.
-    pub fn keeps_sizes(&self, is_same_frame: bool) -> bool {
+    pub(super) fn keeps_sizes(&self, is_same_frame: bool) -> bool {
         self.frames + 1 < FRAMES_BETWEEN_PREDICTIONS || (self.settled && is_same_frame)
     }
 
     /// Counts a frame for which no light is fitted anew. A prediction that is due counts as made.
-    pub fn keep_sizes(&mut self, is_same_frame: bool) {
+    pub(super) fn keep_sizes(&mut self, is_same_frame: bool) {
         self.settled &= is_same_frame;
         self.frames = (self.frames + 1) % FRAMES_BETWEEN_PREDICTIONS;
     }
 
     /// Returns whether a view that something casts into has never been considered.
-    pub fn is_new(&self, view: usize) -> bool {
+    pub(super) fn is_new(&self, view: usize) -> bool {
         self.sizes.level(view).is_none()
     }
 
     /// Chooses sizes. `seen` holds, for each view that something casts into, its side in tangents
     /// and what the cameras see of it; without a camera all have the same size.
-    pub fn choose(&mut self, seen: &[Option<(f64, ViewNeed)>], has_camera: bool, points: usize) {
+    pub(super) fn choose(
+        &mut self,
+        seen: &[Option<(f64, ViewNeed)>],
+        has_camera: bool,
+        points: usize,
+    ) {
         let before = (self.needs.clone(), self.sizes.clone());
         for (need, seen) in self.needs.iter_mut().zip(seen) {
             let now = seen.map_or(ViewNeed::default(), |(_, now)| now);
@@ -187,7 +192,7 @@ impl PoolLayer {
     /// its present size, or gets a smaller one than it is to have.
     ///
     /// Without a limit there is always room: squares are taken from the largest to the smallest.
-    pub fn place(&mut self, requests: &[Request], most_moved: Option<u32>) -> Placed {
+    pub(super) fn place(&mut self, requests: &[Request], most_moved: Option<u32>) -> Placed {
         let mut holds = vec![Hold::Idle; self.needs.len()];
         let mut pending: Vec<(u32, usize)> = Vec::new();
         for request in requests {

@@ -61,7 +61,7 @@ pub(crate) enum BiasScheme {
 
 impl BiasScheme {
     /// Returns the name of the WGSL module.
-    pub const fn module(self) -> &'static str {
+    pub(crate) const fn module(self) -> &'static str {
         match self {
             Self::Plane => "bias_plane",
             Self::NormalOffset => "bias_normal_offset",
@@ -71,7 +71,7 @@ impl BiasScheme {
 
     /// Returns what follows `shadow_receiver_` in the name of the WGSL function that makes a
     /// receiver.
-    pub const fn name(self) -> &'static str {
+    pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Plane => "plane",
             Self::NormalOffset => "normal_offset",

@@ -40,7 +40,7 @@ pub(crate) struct LayerState {
 
 impl LayerState {
     /// Returns the state of a view of a directional light without a limit to its shadows.
-    pub fn directional(index: u32, slice: Option<SliceReport>) -> Self {
+    pub(crate) fn directional(index: u32, slice: Option<SliceReport>) -> Self {
         Self {
             index,
             anchor_render: Vec3::ZERO,

@@ -59,7 +59,7 @@ pub(crate) struct LightUniforms {
 impl LightUniforms {
     /// Returns what the views of a light have in common. `light` is what it draws into those views
     /// into which something casts, from the first; there is at least one.
-    pub fn of(light: &[ViewDraws]) -> Self {
+    pub(super) fn of(light: &[ViewDraws]) -> Self {
         let local_reaches = light.iter().map(|draws| match draws.view.placement() {
             ViewPlacement::Orthographic { .. } => 0.0,
             ViewPlacement::Perspective { .. } => draws.view.render_reach(),
@@ -79,7 +79,7 @@ impl LightUniforms {
     /// all by less than `10 u d`. By what `d` is larger than under the cascade's own anchor, which
     /// is at most the distance of the two anchors, the reach is larger 2.5 times, since the
     /// rounding is `4u` of the reach.
-    pub fn sampled(&self, view: &ShadowView) -> ShadowView {
+    pub(super) fn sampled(&self, view: &ShadowView) -> ShadowView {
         let apart = (view.anchor_render() - self.anchor_render).as_dvec3();
         match view.placement() {
             ViewPlacement::Orthographic { .. } => {
@@ -92,7 +92,7 @@ impl LightUniforms {
     /// Writes the uniforms of all views of a light. `light` and `layers` are in the order of views,
     /// and `layer_of` returns the layer of a view. Shaders read what the views of a light have in
     /// common from any of them, those into which nothing casts included.
-    pub fn fill(
+    pub(super) fn fill(
         &self,
         uniforms: &mut [ShadowViewUniform],
         light: &[ViewDraws],
@@ -125,7 +125,7 @@ impl LightUniforms {
     /// Returns the uniform of one of the light's views, in which positions have shadows within
     /// `shadowed_texels`: least x, least y, greatest x, greatest y in texel
     /// coordinates of the view's rectangle.
-    pub fn view(
+    pub(super) fn view(
         &self,
         view: &ShadowView,
         sampling: &Sampling,

@@ -22,7 +22,7 @@ macro_rules! templates {
                 const SOURCE: &'static str = include_str!(concat!("../../wgsl/template/", $file));
 
                 /// Returns the template's text with its holes filled.
-                pub fn fill(&self) -> String {
+                pub(crate) fn fill(&self) -> String {
                     fill(Self::SOURCE, &[$((stringify!($hole), self.$hole)),*])
                 }
             }

@@ -21,7 +21,7 @@ impl TexelAccess {
     /// for which naga writes no such gather of a depth texture, and where GLSL ES 3.00 has no
     /// gather at all. There a pipeline that gathers is created as a test, so that nothing depends
     /// on names and versions.
-    pub fn of(device: &wgpu::Device) -> Self {
+    pub(super) fn of(device: &wgpu::Device) -> Self {
         if device.adapter_info().backend != wgpu::Backend::Gl {
             return Self::OffsetGathers;
         }
@@ -34,7 +34,7 @@ impl TexelAccess {
     }
 
     /// Returns the module that this access needs instead of the default one.
-    pub const fn module(self) -> Option<&'static str> {
+    pub(super) const fn module(self) -> Option<&'static str> {
         match self {
             Self::OffsetGathers => Some("texels_by_offsets"),
             Self::Gathers => None,
@@ -43,7 +43,7 @@ impl TexelAccess {
     }
 
     /// Returns the map's type in WGSL, which is the module's alias `ShadowMap`.
-    pub const fn map_wgsl(self) -> &'static str {
+    pub(super) const fn map_wgsl(self) -> &'static str {
         match self {
             Self::OffsetGathers | Self::Gathers => "texture_depth_2d_array",
             Self::Samples => "texture_2d_array<f32>",
@@ -51,7 +51,7 @@ impl TexelAccess {
     }
 
     /// Returns the map's type in a bind group layout.
-    pub const fn map_binding(self) -> wgpu::BindingType {
+    pub(super) const fn map_binding(self) -> wgpu::BindingType {
         let sample_type = match self {
             Self::OffsetGathers | Self::Gathers => wgpu::TextureSampleType::Depth,
             Self::Samples => wgpu::TextureSampleType::Float { filterable: false },

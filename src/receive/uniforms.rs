@@ -114,7 +114,7 @@ pub(crate) struct ShadowMapping {
 
 impl ShadowMapping {
     /// Is the mapping of a view into which nothing casts: it covers no position.
-    pub const EMPTY: Self = Self {
+    pub(crate) const EMPTY: Self = Self {
         texel_scale: [0.0; 2],
         texel_size: [0.0; 2],
         depth_scale: 0.0,
@@ -126,7 +126,7 @@ impl ShadowMapping {
 
     /// Returns the mapping of a view of the same light into which nothing casts. Shaders read what
     /// the views of a local light have in common from any of them.
-    pub fn of_empty_view(self) -> Self {
+    pub(crate) fn of_empty_view(self) -> Self {
         Self {
             middle: self.middle,
             inner: self.inner,
@@ -164,7 +164,7 @@ pub(crate) const ROUNDING_TEXELS: f64 = 1.0 / 64.0;
 
 impl Sampling {
     /// Returns the settings for maps of 32 bits without blending.
-    pub fn new(filter: Filter, bias: Bias) -> Self {
+    pub(crate) fn new(filter: Filter, bias: Bias) -> Self {
         Self {
             filter,
             bias,
@@ -177,14 +177,14 @@ impl Sampling {
     /// Returns the height in world units above which a caster that lies on a surface always casts
     /// onto it: the gap that the bias can leave, and two steps of the map's format. One step is
     /// added to the receiver's depth, and by another the caster may be stored too far away.
-    pub fn max_peter_panning_world(&self, view: &ShadowView) -> f32 {
+    pub(crate) fn max_peter_panning_world(&self, view: &ShadowView) -> f32 {
         let step = self.depth_format.step_ndc() * f64::from(view.depth_range_world());
         self.bias.max_peter_panning_world(self.filter, view) + 2.0 * step as f32
     }
 
     /// Returns the height above a surface, in texels, below which a caster may leave no shadow on
     /// it, at the worst angle.
-    pub fn gap_texels(&self) -> f64 {
+    pub(crate) fn gap_texels(&self) -> f64 {
         let reach = self.bias.offset_texels(self.filter) + self.filter.reach_texels();
         reach * std::f64::consts::SQRT_2
     }
@@ -193,7 +193,7 @@ impl Sampling {
     /// normal in light space: that of the bias, and the lateral error where all texels are compared
     /// with one reference depth. A tangent plane has a reference depth per texel, and allows for
     /// the lateral error in those.
-    pub fn lookup_offset_texels(&self, view: &ShadowView) -> f64 {
+    pub(crate) fn lookup_offset_texels(&self, view: &ShadowView) -> f64 {
         let offset = self.bias.offset_texels(self.filter);
         match self.bias.scheme(self.filter) {
             BiasScheme::NormalOffset => offset + lateral_error_texels(view),
@@ -204,14 +204,14 @@ impl Sampling {
     /// Returns the number of texels by which a lookup may deviate from the position of its
     /// receiver: the filter's reach, the distance across the map by which an offset along the
     /// normal can move it, and rounding.
-    pub fn border_texels(&self) -> f64 {
+    pub(crate) fn border_texels(&self) -> f64 {
         let sideways = self.bias.offset_texels(self.filter) * std::f64::consts::SQRT_2;
         self.filter.reach_texels() + sideways + ROUNDING_TEXELS
     }
 
     /// Returns the number of whole texels that a fitted map keeps free on every side, so that no
     /// kernel leaves it.
-    pub fn margin_texels(&self) -> u32 {
+    pub(crate) fn margin_texels(&self) -> u32 {
         self.border_texels().ceil() as u32
     }
 }

@@ -12,18 +12,20 @@
 //! viewpoint.rs     the camera
 //! scene/           the scenes, as triangles
 //! engine.rs        the scene on the device, and both sides of the picture
-//! stage.rs, side.rs, lamps.rs, picture.rs
+//! stage.rs, side.rs, leaves.rs, lamps.rs, picture.rs
 //! trial.rs         both sides against the truth; truth.rs: rays
-//! readback.rs, device_clock.rs
+//! readback.rs, device_clock.rs, device_errors.rs
 //! ui/              the panels
 //! ```
 
 mod address;
 mod descriptor;
 mod device_clock;
+mod device_errors;
 mod engine;
 mod host;
 mod lamps;
+mod leaves;
 #[cfg(not(target_arch = "wasm32"))]
 mod offscreen;
 mod picture;

@@ -10,6 +10,7 @@ use wgpu_shadows::{
     caster::caster_shape, error::CasterError,
 };
 
+use crate::leaves::{self, LeafCaster};
 use crate::scene::{Model, Role, Scene};
 
 /// Holds what is drawn of a scene.
@@ -24,17 +25,25 @@ struct DrawnModel {
     mesh: Mesh,
     instances: wgpu::Buffer,
     count: u32,
-    /// Holds the copies that cast, if the model does.
-    caster: Option<InstancedMeshCaster>,
+    caster: Option<ModelCaster>,
     path: Option<fn(f32) -> Vec<Instance>>,
+}
+
+/// Is what casts for a model.
+enum ModelCaster {
+    Copies(InstancedMeshCaster),
+    Leaves(LeafCaster),
 }
 
 impl Stage {
     pub fn new(device: &wgpu::Device, scene: &Scene) -> Result<Self, CasterError> {
         let formats = [DepthFormat::Float32, DepthFormat::Unorm16];
-        let pipeline = copies_pipeline(device, &formats)?;
-        let models = scene.models.iter();
-        let models = models.map(|model| DrawnModel::new(device, model, &pipeline));
+        let pipelines = Pipelines {
+            copies: copies_pipeline(device, &formats)?,
+            leaves: leaves::pipeline(device, &formats)?,
+        };
+        let models = scene.models.iter().enumerate();
+        let models = models.map(|(index, model)| DrawnModel::new(device, model, index, &pipelines));
         Ok(Self {
             models: models.collect::<Result<_, _>>()?,
             receivers: scene
@@ -56,7 +65,7 @@ impl Stage {
             let Some(path) = model.path else { continue };
             let instances = path(time);
             queue.write_buffer(&model.instances, 0, cast_slice(&instances));
-            if let Some(caster) = &mut model.caster {
+            if let Some(ModelCaster::Copies(caster)) = &mut model.caster {
                 caster.set_transforms(0, &transforms(&instances))?;
             }
         }
@@ -65,7 +74,7 @@ impl Stage {
 
     pub fn casters(&self) -> Vec<&dyn ShadowCaster> {
         let casters = self.models.iter().filter_map(|model| model.caster.as_ref());
-        casters.map(|caster| caster as _).collect()
+        casters.map(ModelCaster::caster).collect()
     }
 
     pub fn receivers(&self) -> &[Aabb] {
@@ -85,28 +94,53 @@ impl Stage {
     }
 }
 
+/// Holds the pipelines of all casters.
+struct Pipelines {
+    copies: CasterPipeline,
+    leaves: CasterPipeline,
+}
+
+impl ModelCaster {
+    fn caster(&self) -> &dyn ShadowCaster {
+        match self {
+            Self::Copies(caster) => caster,
+            Self::Leaves(caster) => caster,
+        }
+    }
+}
+
 impl DrawnModel {
     fn new(
         device: &wgpu::Device,
         model: &Model,
-        pipeline: &CasterPipeline,
+        index: usize,
+        pipelines: &Pipelines,
     ) -> Result<Self, CasterError> {
         let mesh = Mesh::new(device, &model.vertices);
-        let caster = if model.role == Role::Solid {
-            let mut caster = mesh.copies(device, pipeline, &model.instances)?;
-            caster.set_shape(shape(model));
-            Some(caster)
-        } else {
-            None
+        let instances = device.create_buffer_init(&BufferInitDescriptor {
+            label: Some("instances"),
+            contents: cast_slice(&model.instances),
+            usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+        });
+        let count = model.instances.len() as u32;
+        let caster = match model.role {
+            Role::Solid => {
+                let mut caster = mesh.copies(device, &pipelines.copies, &model.instances)?;
+                caster.set_shape(shape(model));
+                Some(ModelCaster::Copies(caster))
+            }
+            Role::Leaves => {
+                let cards = (&instances, count);
+                let bounds = model.bounds();
+                let caster = LeafCaster::new(device, &pipelines.leaves, cards, bounds, index);
+                Some(ModelCaster::Leaves(caster))
+            }
+            Role::Ground | Role::Glow => None,
         };
         Ok(Self {
             caster,
-            count: model.instances.len() as u32,
-            instances: device.create_buffer_init(&BufferInitDescriptor {
-                label: Some("instances"),
-                contents: cast_slice(&model.instances),
-                usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
-            }),
+            count,
+            instances,
             mesh,
             path: model.path,
         })

@@ -11,6 +11,7 @@ use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::{Window, WindowAttributes, WindowId};
 
+use crate::device_errors::DeviceErrors;
 use crate::host;
 use crate::state::Request;
 use crate::viewer::Viewer;
@@ -21,7 +22,7 @@ const ADDRESS_PAUSE: Duration = Duration::from_millis(500);
 /// Is what comes to the window from beside its events.
 pub enum Arrival {
     /// The device is there, or there is none.
-    Made(Box<Result<Shown, String>>),
+    Made(Box<Result<Shown, String>>, Arc<Window>),
     /// A panel asks for something: a file was dropped on the page.
     #[cfg_attr(not(target_arch = "wasm32"), expect(dead_code))]
     Request(Request),
@@ -34,6 +35,7 @@ pub struct Shown {
     configuration: wgpu::SurfaceConfiguration,
     input: egui_winit::State,
     viewer: Viewer,
+    errors: DeviceErrors,
 }
 
 /// Answers the events of the window.
@@ -44,11 +46,13 @@ pub struct App {
     first_request: Option<Request>,
     attributes: WindowAttributes,
     shown: Option<Shown>,
+    /// Is shown instead where there is no device.
+    notice: Option<host::Notice>,
     /// Is when the address was last written.
     address_kept: Instant,
     /// Is when the next frame is wanted, if not at once.
     next_frame: Option<Instant>,
-    /// Is why the window was closed before it showed anything.
+    /// Is why there is no viewer in the window.
     pub failure: Option<String>,
 }
 
@@ -66,6 +70,7 @@ pub fn run(
         first_request,
         attributes,
         shown: None,
+        notice: None,
         address_kept: Instant::now(),
         next_frame: None,
         failure: None,
@@ -76,7 +81,7 @@ pub fn run(
 
 impl ApplicationHandler<Arrival> for App {
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {
-        if self.shown.is_some() {
+        if self.shown.is_some() || self.notice.is_some() {
             return;
         }
         let window = match event_loop.create_window(self.attributes.clone()) {
@@ -90,15 +95,15 @@ impl ApplicationHandler<Arrival> for App {
         let (proxy, address) = (self.proxy.clone(), self.address.clone());
         let display = event_loop.owned_display_handle();
         host::spawn(async move {
-            let made = Shown::new(window, Box::new(display), &address).await;
+            let made = Shown::new(window.clone(), Box::new(display), &address).await;
             // The loop is gone where nobody receives this.
-            let _ = proxy.send_event(Arrival::Made(Box::new(made)));
+            let _ = proxy.send_event(Arrival::Made(Box::new(made), window));
         });
     }
 
     fn user_event(&mut self, event_loop: &ActiveEventLoop, arrival: Arrival) {
         match arrival {
-            Arrival::Made(made) => match *made {
+            Arrival::Made(made, window) => match *made {
                 Ok(mut shown) => {
                     shown
                         .viewer
@@ -112,9 +117,12 @@ impl ApplicationHandler<Arrival> for App {
                     self.shown = Some(shown);
                 }
                 Err(error) => {
-                    host::tell_failure(&error);
+                    host::log(&error);
+                    self.notice = host::Notice::new(window, &error);
                     self.failure = Some(error);
-                    event_loop.exit();
+                    if self.notice.is_none() {
+                        event_loop.exit();
+                    }
                 }
             },
             Arrival::Request(request) => {
@@ -127,7 +135,14 @@ impl ApplicationHandler<Arrival> for App {
     }
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
-        let Some(shown) = &mut self.shown else { return };
+        let Some(shown) = &mut self.shown else {
+            match (event, &mut self.notice) {
+                (WindowEvent::CloseRequested, _) => event_loop.exit(),
+                (WindowEvent::RedrawRequested, Some(notice)) => notice.draw(),
+                _ => {}
+            }
+            return;
+        };
         if shown.input.on_window_event(&shown.window, &event).repaint {
             shown.window.request_redraw();
         }
@@ -176,7 +191,7 @@ impl Shown {
         );
         let surface = instance
             .create_surface(window.clone())
-            .map_err(|error| format!("the window cannot be drawn to: {error}"))?;
+            .map_err(|error| host::no_adapter(&error))?;
         let request = wgpu::RequestAdapterOptions {
             power_preference: wgpu::PowerPreference::HighPerformance,
             compatible_surface: Some(&surface),
@@ -204,6 +219,8 @@ impl Shown {
         configuration.format = plain.copied().unwrap_or(configuration.format);
         configuration.desired_maximum_frame_latency = 1;
         surface.configure(&device, &configuration);
+        let awake = window.clone();
+        let errors = DeviceErrors::listen(&device, move || awake.request_redraw());
         let gpu = Gpu::from_device(adapter.get_info(), device, queue);
         let most = gpu.device.limits().max_texture_dimension_2d as usize;
         let viewer = Viewer::new(gpu, configuration.format, address)?;
@@ -221,6 +238,7 @@ impl Shown {
             configuration,
             input,
             viewer,
+            errors,
         })
     }
 
@@ -248,10 +266,18 @@ impl Shown {
             }
             _ => return Duration::from_millis(100),
         };
+        for message in self.errors.take() {
+            self.viewer.state.tell(message);
+        }
         let input = self.input.take_egui_input(&self.window);
         let view = texture.texture.create_view(&Default::default());
         let size = [texture.texture.width(), texture.texture.height()];
         let result = self.viewer.frame(input, &view, size);
+        for command in &result.output.commands {
+            if let egui::OutputCommand::CopyText(text) = command {
+                host::copy(text);
+            }
+        }
         self.input
             .handle_platform_output(&self.window, result.output);
         self.window.pre_present_notify();

@@ -91,7 +91,7 @@ impl BoundsTree {
     /// Replaces all boxes by those of a list, whose places are their indices. Empty ones are left
     /// out. The tree is as good as one that is made at once can be: each box of it divides its
     /// members at the median of their middles.
-    pub fn rebuild(&mut self, bounds: impl Iterator<Item = Aabb>) {
+    pub(crate) fn rebuild(&mut self, bounds: impl Iterator<Item = Aabb>) {
         self.leaves.clear();
         self.leaves.extend(bounds.map(|fat| Leaf {
             fat,
@@ -139,7 +139,7 @@ impl BoundsTree {
     }
 
     /// Sets the box of an index, which may be new, from `before`, the box that it had last.
-    pub fn set(&mut self, index: u32, before: &Aabb, bounds: &Aabb) {
+    pub(crate) fn set(&mut self, index: u32, before: &Aabb, bounds: &Aabb) {
         let place = index as usize;
         if place >= self.leaves.len() {
             self.leaves.resize(place + 1, Leaf::NOTHING);
@@ -230,7 +230,7 @@ impl BoundsTree {
     /// Visits the tree from its root: calls `meet` with the index of every box for which `enters`
     /// returns true. `enters` is called for the boxes above it first and must return true for each
     /// of these; `state` is passed to both.
-    pub fn walk<S>(
+    pub(crate) fn walk<S>(
         &self,
         state: &mut S,
         enters: impl FnMut(&S, &Aabb) -> bool,

@@ -26,14 +26,14 @@ pub(super) struct Node {
 }
 
 impl Node {
-    pub fn leaf(index: u32, bounds: Aabb) -> Self {
+    pub(super) fn leaf(index: u32, bounds: Aabb) -> Self {
         Self {
             bounds,
             links: [index, NONE],
         }
     }
 
-    pub fn is_leaf(&self) -> bool {
+    pub(super) fn is_leaf(&self) -> bool {
         self.links[1] == NONE
     }
 }
@@ -52,7 +52,7 @@ impl Default for Nodes {
 
 impl Nodes {
     /// Removes all nodes.
-    pub fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.nodes.clear();
         self.parents.clear();
         self.spare.clear();
@@ -60,7 +60,7 @@ impl Nodes {
     }
 
     /// Adds a node without a parent.
-    pub fn add(&mut self, node: Node) -> u32 {
+    pub(super) fn add(&mut self, node: Node) -> u32 {
         if let Some(at) = self.spare.pop() {
             self.nodes[at as usize] = node;
             self.parents[at as usize] = NONE;
@@ -72,7 +72,7 @@ impl Nodes {
     }
 
     /// Sets the box of a leaf and makes all boxes above it hold it.
-    pub fn widen(&mut self, leaf: u32, bounds: &Aabb) {
+    pub(super) fn widen(&mut self, leaf: u32, bounds: &Aabb) {
         self.nodes[leaf as usize].bounds = *bounds;
         let mut at = self.parents[leaf as usize];
         while at != NONE {
@@ -88,7 +88,7 @@ impl Nodes {
     /// Makes each box the smallest around those below it, from the leaves up, whose boxes
     /// `bounds_of` returns by their indices. That costs less than widening the boxes above each
     /// leaf where many leaves have moved.
-    pub fn refit(&mut self, bounds_of: impl Fn(u32) -> Aabb) {
+    pub(super) fn refit(&mut self, bounds_of: impl Fn(u32) -> Aabb) {
         self.order.clear();
         let mut stack = Vec::new();
         let mut next = (self.root != NONE).then_some(self.root);
@@ -115,7 +115,7 @@ impl Nodes {
     }
 
     /// Visits the nodes from the root, as [`BoundsTree::walk`](super::BoundsTree::walk) does.
-    pub fn walk<S>(
+    pub(super) fn walk<S>(
         &self,
         state: &mut S,
         mut enters: impl FnMut(&S, &Aabb) -> bool,

@@ -5,7 +5,7 @@ use crate::Aabb;
 
 impl Nodes {
     /// Adds a leaf where the areas of the boxes above it grow least, and returns its node.
-    pub fn insert(&mut self, index: u32, bounds: Aabb) -> u32 {
+    pub(super) fn insert(&mut self, index: u32, bounds: Aabb) -> u32 {
         let leaf = self.add(Node::leaf(index, bounds));
         if self.root == NONE {
             self.root = leaf;
@@ -53,7 +53,7 @@ impl Nodes {
     }
 
     /// Removes a leaf and makes the boxes above it smaller.
-    pub fn remove(&mut self, leaf: u32) {
+    pub(super) fn remove(&mut self, leaf: u32) {
         self.spare.push(leaf);
         let parent = self.parents[leaf as usize];
         if parent == NONE {

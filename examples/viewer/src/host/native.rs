@@ -1,6 +1,7 @@
 //! Starts the program, with its command line.
 
 use std::error::Error;
+use std::fmt::Display;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -20,7 +21,7 @@ use crate::window::{self, App, Arrival};
 struct Arguments {
     /// Names a glTF file to show.
     file: Option<PathBuf>,
-    /// Names a built-in scene: textbook, town, hall, penumbrae or sky.
+    /// Names a built-in scene: textbook, town, hall, penumbrae, sky or grove.
     #[arg(long)]
     scene: Option<String>,
     /// Sets what the page has behind the # of its address, as key=value&key=value.
@@ -89,16 +90,26 @@ pub fn spawn(work: impl Future<Output = ()>) {
 /// Does what a page does before its first frame: nothing.
 pub fn before_run(_: &EventLoopProxy<Arrival>) {}
 
-/// Tells a failure where there is no window yet: the program ends with it.
-pub fn tell_failure(_: &str) {}
+/// Writes a message for whoever started the program.
+pub fn log(message: &str) {
+    eprintln!("viewer: {message}");
+}
+
+/// Copies a text where egui does not: nowhere.
+pub fn copy(_: &str) {}
 
 /// Keeps the settings where a page does: nowhere.
 pub fn keep_address(_: &Settings) {}
 
-/// Returns what to do where no adapter is found.
-pub fn no_adapter(error: &wgpu::RequestAdapterError) -> String {
+/// Returns what to do where nothing can draw to the window.
+pub fn no_adapter(error: &dyn Display) -> String {
     format!(
-        "no graphics adapter ({error}); on Debian and Ubuntu a software one comes with `apt-get \
-         install mesa-vulkan-drivers` (Vulkan) or `libegl1 libgl1-mesa-dri` (OpenGL)"
+        "No graphics driver was found that can draw to this window ({error}).\n\n\
+         On Debian and Ubuntu, a software one comes with\n\
+         apt-get install mesa-vulkan-drivers\n\
+         for Vulkan, or with\n\
+         apt-get install libegl1 libgl1-mesa-dri\n\
+         for OpenGL. Elsewhere, install the driver of your GPU's maker. The variable WGPU_BACKEND, \
+         if it is set, must name a backend that the driver has."
     )
 }

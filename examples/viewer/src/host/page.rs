@@ -1,6 +1,8 @@
 //! Starts the page: the canvas, the address, dropped files, and words where WebGPU is missing.
 
+use std::fmt::Display;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use wasm_bindgen::prelude::*;
 use wasm_bindgen_futures::{JsFuture, spawn_local};
@@ -18,7 +20,7 @@ use crate::window::{self as viewer_window, App, Arrival};
 pub fn main() -> ExitCode {
     std::panic::set_hook(Box::new(|panic| {
         let text = panic.to_string();
-        web_sys::console::error_1(&text.as_str().into());
+        log(&text);
         tell_failure(&text);
     }));
     let address = window().location().hash().unwrap_or_default();
@@ -71,13 +73,42 @@ pub fn before_run(proxy: &EventLoopProxy<Arrival>) {
     }
 }
 
+/// Writes a message for whoever develops the page.
+pub fn log(message: &str) {
+    web_sys::console::error_1(&message.into());
+}
+
+/// Is words in place of the canvas.
+pub struct Notice;
+
+impl Notice {
+    /// Shows the words.
+    pub fn new(_: Arc<Window>, text: &str) -> Option<Self> {
+        tell_failure(text);
+        Some(Self)
+    }
+
+    /// Does nothing: the page draws its own words.
+    pub fn draw(&mut self) {}
+}
+
 /// Tells a failure in place of the canvas.
-pub fn tell_failure(error: &str) {
+fn tell_failure(error: &str) {
     if let Some(element) = document().get_element_by_id("failure") {
         element.set_text_content(Some(error));
         // The element is hidden until it has something to tell.
         let _ = element.remove_attribute("hidden");
     }
+}
+
+/// Copies a text to the browser's clipboard, which egui leaves to its host.
+pub fn copy(text: &str) {
+    let copied = window().navigator().clipboard().write_text(text);
+    spawn_local(async move {
+        if JsFuture::from(copied).await.is_err() {
+            log("The browser does not let the page copy.");
+        }
+    });
 }
 
 /// Keeps the settings in the address, without a new entry in the history.
@@ -93,12 +124,12 @@ pub fn keep_address(settings: &Settings) {
 }
 
 /// Returns what to do where no adapter is found.
-pub fn no_adapter(error: &wgpu::RequestAdapterError) -> String {
-    format!(
-        "This page needs WebGPU, which this browser does not offer ({error}). Chrome and Edge from \
-         113 on have it, as do Safari from 26 on and Firefox from 141 on Windows; under Linux, \
-         Chromium may need --enable-unsafe-webgpu --enable-features=Vulkan."
-    )
+pub fn no_adapter(error: &dyn Display) -> String {
+    log(&error.to_string());
+    "This browser offers WebGPU, but no adapter to draw with. Chrome and Edge from 113 on have one \
+     where they trust the driver of the GPU, as do Safari from 26 on and Firefox from 141 on \
+     Windows; under Linux, Chromium may need --enable-unsafe-webgpu --enable-features=Vulkan."
+        .to_owned()
 }
 
 fn window() -> web_sys::Window {

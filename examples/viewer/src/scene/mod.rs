@@ -4,12 +4,14 @@
 //! textbook.rs   the tutorial's floor and cubes
 //! town.rs       a town with a walker
 //! hall.rs       a hall of lamps
+//! grove.rs      trees whose leaves are cut out of cards
 //! penumbrae.rs  poles, slats and balls under a large light
 //! sky.rs        a sky dome and a ground of ten kilometres
 //! file.rs       a glTF file
 //! ```
 
 mod file;
+mod grove;
 pub mod hall;
 mod penumbrae;
 mod sky;
@@ -72,6 +74,8 @@ pub struct Model {
 pub enum Role {
     /// Casts and receives shadows.
     Solid,
+    /// Is the outlines of [`leaves`](crate::leaves), which cast and receive.
+    Leaves,
     /// Only receives.
     Ground,
     /// Does neither: a sky, or a lamp.
@@ -83,7 +87,7 @@ pub enum Role {
 pub const UNLIT: f32 = -1.0;
 
 /// Lists the names of the built-in scenes.
-pub const NAMES: [&str; 5] = ["textbook", "town", "hall", "penumbrae", "sky"];
+pub const NAMES: [&str; 6] = ["textbook", "town", "hall", "penumbrae", "sky", "grove"];
 
 /// Returns a built-in scene.
 pub fn built_in(name: &str) -> Option<Scene> {
@@ -93,6 +97,7 @@ pub fn built_in(name: &str) -> Option<Scene> {
         "hall" => hall::scene(),
         "penumbrae" => penumbrae::scene(),
         "sky" => sky::scene(),
+        "grove" => grove::scene(),
         _ => return None,
     })
 }

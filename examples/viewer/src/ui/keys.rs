@@ -16,7 +16,7 @@ const HELP: [(&str, &str); 13] = [
     ("wheel", "goes nearer or farther"),
     ("W A S D, Q E", "fly; with Shift faster"),
     ("Home", "returns to where the scene begins"),
-    ("1 to 5", "show the built-in scenes"),
+    ("1 to 6", "show the built-in scenes"),
     ("Space", "lets everything move, or stop"),
     ("V", "shows scene, visibility, cascades, map in turn"),
     ("X", "shows both sides or one"),
@@ -41,7 +41,14 @@ pub fn handle(context: &egui::Context, state: &mut State, engine: &Engine) {
     if pressed(Key::Home) {
         state.settings.viewpoint = engine.scene().viewpoint;
     }
-    let digits = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5];
+    let digits = [
+        Key::Num1,
+        Key::Num2,
+        Key::Num3,
+        Key::Num4,
+        Key::Num5,
+        Key::Num6,
+    ];
     if let Some(number) = digits.into_iter().position(&pressed) {
         state.request_scene(number);
     }
