@@ -5,8 +5,8 @@ mod shadows;
 use std::f32::consts::TAU;
 
 use graphics::{
-    ControlScheme, EngineUpdates, Entity, EntityUpdate, GraphicsSettings, LightType, Lighting, Mesh,
-    PointLight, RIGHT_VEC, Scene, UP_VEC, UiSettings,
+    ControlScheme, EngineUpdates, Entity, EntityUpdate, GraphicsSettings, LightType, Lighting,
+    Mesh, PointLight, RIGHT_VEC, Scene, UP_VEC, UiSettings,
 };
 use lin_alg::f32::{Quaternion, Vec3};
 

@@ -159,7 +159,9 @@ impl Shadows {
 /// Returns the matrix with which the engine draws an entity.
 fn world_from_model(entity: &Entity) -> Mat4 {
     let scale = entity.scale;
-    let scale = entity.scale_partial.unwrap_or(Vec3::new(scale, scale, scale));
+    let scale = entity
+        .scale_partial
+        .unwrap_or(Vec3::new(scale, scale, scale));
     let pivot = entity.pivot.unwrap_or(Vec3::new_zero());
     Mat4::new_translation(entity.position)
         * Mat4::new_translation(pivot)
