@@ -20,6 +20,7 @@
 //! layer_cache.rs         what a layer caches, and what a frame must draw
 //! recorder.rs            the passes; layer_pass.rs: one of them
 //! shared_layer.rs        how parts of a layer are cleared and copied
+//! ray_pass.rs            many views of one texel, in one pass
 //! draw_list.rs           the draw calls of the passes, one for all instances of equal geometry
 //! instance_matrices.rs   the matrices that these draw
 //! draw_casters.rs        the loop that makes the draw calls
@@ -51,6 +52,7 @@ mod pipeline;
 mod pipeline_build;
 mod pipeline_descriptor;
 mod pipeline_reads;
+mod ray_pass;
 mod recorder;
 mod revision;
 mod shared_layer;
@@ -73,6 +75,7 @@ pub use pipeline::CasterPipeline;
 pub use pipeline_descriptor::{
     CasterPipelineDescriptor, CasterVertex, ModelTransform, PositionAttribute,
 };
+pub(crate) use ray_pass::{RayDraws, RayPass};
 pub(crate) use recorder::{Recorder, RecorderKind};
 pub use revision::Revision;
 pub(crate) use shared_layer::shared_layer_group;
