@@ -4,6 +4,7 @@ use crate::cast::RayPass;
 use crate::check;
 use crate::gpu::StagedUploads;
 use crate::meter::light::MeasuredLight;
+use crate::meter::limits::check_limits;
 use crate::meter::lookup::{Lookup, RESULT_BYTES};
 use crate::meter::measured::{MeasuredError, MeterReport};
 use crate::meter::places::{Place, Places, RAYS_PER_PLACE, RaySetting, Receiver};
@@ -143,6 +144,7 @@ impl ErrorMeter {
         )?;
         let maps = descriptor.maps;
         let device = maps.device();
+        check_limits(device, field, places)?;
         let label = descriptor.label.unwrap_or("shadow error meter");
         let format = maps.sampling().depth_format;
         let most_rays = places * RAYS_PER_PLACE as u32;

@@ -2,7 +2,7 @@
 //! compute pass.
 
 use crate::error::{BindingsError, DeviceError};
-use crate::gpu::{DepthMap, Need, Upload, capture_device_errors};
+use crate::gpu::{DepthMap, Upload, capture_device_errors};
 use crate::meter::places::PlaceUniform;
 use crate::receive::{ErrorMeterPass, ShadowMaps};
 use crate::{ShadowBindings, ShadowBindingsDescriptor, ShadowError, shader};
@@ -14,7 +14,7 @@ const NAME: &str = "measured";
 pub(super) const RESULT_BYTES: u64 = size_of::<[f32; 4]>() as u64;
 
 /// Is the number of places that a workgroup asks for.
-const WORKGROUP_SIZE: u32 = 64;
+pub(super) const WORKGROUP_SIZE: u32 = 64;
 
 /// Is the path of what determines the bindings, for errors.
 const MAPS_FIELD: &str = "ErrorMeterDescriptor::maps";
@@ -38,7 +38,6 @@ impl Lookup {
         rays: &DepthMap,
     ) -> Result<Self, ShadowError> {
         let device = maps.device();
-        check_limits(device, places)?;
         let bindings = ShadowBindings::new(
             device,
             &ShadowBindingsDescriptor {
@@ -109,64 +108,6 @@ impl Lookup {
         pass.set_bind_group(0, &self.bind_group, &[]);
         pass.set_bind_group(1, self.bindings.bind_group(), &[]);
         pass.dispatch_workgroups(count.div_ceil(WORKGROUP_SIZE), 1, 1);
-    }
-}
-
-/// Accepts devices with compute shaders whose limits suffice. WebGL 2 has none.
-fn check_limits(device: &wgpu::Device, places: u32) -> Result<(), ShadowError> {
-    let limits = device.limits();
-    let bytes = RESULT_BYTES.max(size_of::<PlaceUniform>() as u64) * u64::from(places);
-    let needs = [
-        Need::new(
-            "max_compute_invocations_per_workgroup",
-            WORKGROUP_SIZE,
-            limits.max_compute_invocations_per_workgroup,
-        ),
-        Need::new(
-            "max_compute_workgroup_size_x",
-            WORKGROUP_SIZE,
-            limits.max_compute_workgroup_size_x,
-        ),
-        Need::new(
-            "max_compute_workgroups_per_dimension",
-            places.div_ceil(WORKGROUP_SIZE),
-            limits.max_compute_workgroups_per_dimension,
-        ),
-        Need::new(
-            "max_storage_buffers_per_shader_stage",
-            2u32,
-            limits.max_storage_buffers_per_shader_stage,
-        ),
-        Need::new(
-            "max_sampled_textures_per_shader_stage",
-            2u32,
-            limits.max_sampled_textures_per_shader_stage,
-        ),
-        Need::new(
-            "max_samplers_per_shader_stage",
-            2u32,
-            limits.max_samplers_per_shader_stage,
-        ),
-        Need::new("max_bind_groups", 2u32, limits.max_bind_groups),
-        Need::new(
-            "max_bindings_per_bind_group",
-            4u32,
-            limits.max_bindings_per_bind_group,
-        ),
-        Need::new(
-            "max_storage_buffer_binding_size",
-            bytes,
-            limits.max_storage_buffer_binding_size,
-        ),
-    ];
-    match Need::first_unmet(needs) {
-        None => Ok(()),
-        Some(need) => Err(ShadowError::OverDeviceLimit {
-            field: "the compute pass of an ErrorMeter",
-            limit: need.limit,
-            maximum: need.maximum,
-            value: need.needed,
-        }),
     }
 }
 

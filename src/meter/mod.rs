@@ -4,6 +4,7 @@
 //! error_meter.rs  ErrorMeter: what an engine records
 //! light.rs        MeasuredLight: where rays toward a light lead
 //! places.rs       the places of a frame with their rays
+//! limits.rs       what the meter needs of a device
 //! lookup.rs       the pass that asks the light's own lookup and reads the rays' depths
 //! readback.rs     results on their way to the CPU
 //! results.rs      what they add up to
@@ -15,6 +16,7 @@
 mod error_meter;
 mod estimate;
 mod light;
+mod limits;
 mod lookup;
 mod measured;
 mod places;

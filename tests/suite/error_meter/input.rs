@@ -150,7 +150,8 @@ fn bad_input_is_refused_with_field_and_value() {
     let mut other = self::sun(gpu, DepthFormat::Float32);
     let objects = (&mut other, &mut meter);
     let error = record(&mut gpu.encoder(), objects, &list, &directional, &[BELOW]);
-    let message = "ErrorMeter::record: maps must be those of ErrorMeterDescriptor::maps, got the maps of another light";
+    let message = "ErrorMeter::record: maps must be those of ErrorMeterDescriptor::maps, \
+                   got the maps of another light";
     assert_eq!(error.expect_err(message).to_string(), message);
     wait(gpu);
     assert_eq!(meter.measured().samples, 0.0);
@@ -271,7 +272,8 @@ fn devices_without_compute_shaders_are_refused() {
     });
     let sun = sun(&gpu, DepthFormat::Float32);
     let error = ErrorMeter::new(&ErrorMeterDescriptor::new(sun.maps())).err();
-    let message = "the compute pass of an ErrorMeter: the device's max_compute_invocations_per_workgroup must be at least 64, and it is 0";
+    let message = "the compute pass of an ErrorMeter: \
+                   the device's max_compute_invocations_per_workgroup must be at least 64, and it is 0";
     assert_eq!(
         error.map(|error| error.to_string()).as_deref(),
         Some(message)
