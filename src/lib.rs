@@ -276,6 +276,7 @@ pub mod error;
 mod fit;
 mod gpu;
 mod light;
+pub mod meter;
 mod receive;
 pub mod shader;
 

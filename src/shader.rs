@@ -63,7 +63,7 @@ pub(crate) const CASCADE_TINT: ShaderModule = module!(
     "pass/cascade_tint.wgsl",
     ["view", "place", "fullscreen"]
 );
-
+pub(crate) const ERROR_METER: ShaderModule = module!("error_meter", "pass/error_meter.wgsl", []);
 pub(crate) const GATHER_PROBE: ShaderModule =
     module!("gather_probe", "pass/gather_probe.wgsl", ["fullscreen"]);
 const TEXELS_BY_OFFSETS: ShaderModule = ShaderModule {
@@ -152,6 +152,7 @@ pub const MODULES: &[ShaderModule] = &[
     RECT_COPY,
     DEBUG_VIEW,
     CASCADE_TINT,
+    ERROR_METER,
     GATHER_PROBE,
 ];
 

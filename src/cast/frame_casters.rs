@@ -1,11 +1,12 @@
 //! Holds the casters of a frame with the values that their methods returned.
 
-use crate::Aabb;
 use crate::cast::caster_records::{CasterFacts, CasterRecord, CasterRecords, CastersVersion};
 use crate::cast::instances::Instance;
 use crate::cast::mesh_geometry::MeshGeometry;
-use crate::cast::{CasterInstances, Casters, ShadowCaster};
+use crate::cast::{CasterInstances, CasterPipeline, Casters, ShadowCaster};
 use crate::fit::{Boxes, ChangedBoxes, Role};
+use crate::gpu::DepthFormat;
+use crate::{Aabb, ShadowError};
 
 /// Names bounds of a frame that have a NaN or an infinite corner and are not empty. The object that
 /// they bound is left out of the frame: it neither casts nor receives, and all other objects keep
@@ -133,6 +134,29 @@ impl<'a> FrameCasters<'a> {
     /// Returns the index in the engine's list or set of the caster at `index`.
     pub(crate) fn listed_index(&self, index: u32) -> usize {
         self.facts(index).listed as usize
+    }
+
+    /// Accepts the pipeline of the caster at `index` if it can draw into a map of `format` on
+    /// `device`.
+    pub(crate) fn check_pipeline(
+        &self,
+        index: u32,
+        pipeline: &CasterPipeline,
+        device: &wgpu::Device,
+        format: DepthFormat,
+    ) -> Result<(), ShadowError> {
+        let (field, index) = (self.field, self.listed_index(index));
+        if pipeline.device() != device {
+            return Err(ShadowError::CasterDevice { field, index });
+        }
+        if pipeline.wgpu_pipeline(format).is_none() {
+            return Err(ShadowError::CasterFormat {
+                field,
+                index,
+                format,
+            });
+        }
+        Ok(())
     }
 
     /// Returns what the methods of the caster at `index` returned.

@@ -6,6 +6,7 @@ use crate::cast::draw_casters::{DrawContext, PassDefaults, draw_casters};
 use crate::cast::draw_list::DrawLists;
 use crate::cast::instance_matrices::InstanceMatrices;
 use crate::cast::layer_cache::{LayerCache, Plan, ViewDraws};
+use crate::cast::view_uniform::ViewUniforms;
 use crate::cast::{CLEAR, FrameCasters, depth_attachment};
 use crate::gpu::{DepthFormat, DepthMap};
 
@@ -26,9 +27,8 @@ pub(super) struct PassFrame<'a, 'c> {
     pub casters: &'a FrameCasters<'c>,
     pub matrices: &'a InstanceMatrices,
     pub lists: &'a DrawLists<'c>,
-    /// Is bind group 0, with the offset from one view to the next.
-    pub view_group: &'a wgpu::BindGroup,
-    pub stride: u32,
+    /// Is bind group 0.
+    pub uniforms: &'a ViewUniforms,
     pub format: DepthFormat,
 }
 
@@ -64,9 +64,10 @@ impl Layer {
 impl PassFrame<'_, '_> {
     /// Returns the state of a pass that the casters of a view rely on.
     pub(super) fn defaults(&self, draws: &ViewDraws) -> PassDefaults<'_> {
+        let (view_group, offset) = self.uniforms.group(draws.view.index());
         PassDefaults {
-            view_group: self.view_group,
-            offset: Some(self.stride * draws.view.index()),
+            view_group,
+            offset: Some(offset),
             texels: draws.view.texels(),
         }
     }

@@ -21,6 +21,7 @@
 //! recorder.rs            the passes of a frame; layer_pass.rs: those over the layer of one view;
 //!                        shared_layer_pass.rs: those over a layer that views share
 //! shared_layer.rs        how parts of a layer are cleared and copied
+//! ray_pass.rs            many views of one texel, in one pass
 //! draw_list.rs           the draw calls of the passes, one for all instances of equal geometry
 //! instance_matrices.rs   the matrices that these draw
 //! draw_casters.rs        the loop that makes the draw calls
@@ -54,6 +55,7 @@ mod pipeline;
 mod pipeline_build;
 mod pipeline_descriptor;
 mod pipeline_reads;
+mod ray_pass;
 mod recorder;
 mod revision;
 mod shared_layer;
@@ -77,6 +79,7 @@ pub use pipeline::CasterPipeline;
 pub use pipeline_descriptor::{
     CasterPipelineDescriptor, CasterVertex, ModelTransform, PositionAttribute,
 };
+pub(crate) use ray_pass::{RayDraws, RayPass};
 pub(crate) use recorder::{Recorder, RecorderKind};
 pub use revision::Revision;
 pub(crate) use shared_layer::shared_layer_group;

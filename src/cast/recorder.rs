@@ -7,20 +7,16 @@ use crate::cast::layer_cache::{LayerCache, Plan, ViewDraws};
 use crate::cast::layer_pass::{Layer, PassFrame, record_layer};
 use crate::cast::shared_layer::SharedLayer;
 use crate::cast::shared_layer_pass::record_shared_layer;
-use crate::cast::view_uniform::{CasterViewUniform, VIEW_UNIFORM_BYTES, view_layout};
+use crate::cast::view_uniform::ViewUniforms;
 use crate::cast::{CasterPipeline, FrameCasters};
-use crate::error::DeviceError;
-use crate::gpu::{DepthFormat, DepthMap, Upload, UploadBuffer, capture_device_errors};
+use crate::gpu::{DepthFormat, DepthMap, Upload};
 use crate::{ShadowError, ShadowView};
 
 /// Draws views into the layers of a depth map, and tracks what each layer caches.
 #[derive(Debug)]
 pub(crate) struct Recorder {
     label: String,
-    uniforms: UploadBuffer,
-    bytes: Vec<u8>,
-    stride: u64,
-    bind_group: wgpu::BindGroup,
+    uniforms: ViewUniforms,
     layers: Vec<Layer>,
     matrices: InstanceMatrices,
     /// Holds nothing but memory between frames.
@@ -68,33 +64,7 @@ impl Recorder {
         views: u32,
         kind: RecorderKind,
     ) -> Result<Self, ShadowError> {
-        let alignment = u64::from(device.limits().min_uniform_buffer_offset_alignment);
-        let stride = VIEW_UNIFORM_BYTES.next_multiple_of(alignment);
-        let uniforms = UploadBuffer::new(
-            device,
-            &format!("{label} caster views"),
-            stride * u64::from(views),
-        )?;
-        let create = || {
-            device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some(&format!("{label} caster views")),
-                layout: &view_layout(device),
-                entries: &[wgpu::BindGroupEntry {
-                    binding: 0,
-                    resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                        buffer: uniforms.buffer(),
-                        offset: 0,
-                        size: wgpu::BufferSize::new(VIEW_UNIFORM_BYTES),
-                    }),
-                }],
-            })
-        };
-        let bind_group = capture_device_errors(device, create).map_err(|refusal| {
-            ShadowError::Device(DeviceError {
-                object: "the bind group of the casters",
-                refusal,
-            })
-        })?;
+        let uniforms = ViewUniforms::new(device, label, views)?;
         let shared_layer = match kind {
             RecorderKind::SharedLayer(format) => Some(SharedLayer::new(device, label, format)?),
             RecorderKind::Layers | RecorderKind::Cube => None,
@@ -103,9 +73,6 @@ impl Recorder {
         Ok(Self {
             label: label.into(),
             uniforms,
-            bytes: Vec::new(),
-            stride,
-            bind_group,
             layers: layers.collect(),
             matrices: InstanceMatrices::new(device, label),
             lists: DrawLists::default(),
@@ -171,7 +138,7 @@ impl Recorder {
     ) {
         uploads.extend(match (&self.cube, &prepared.cube) {
             (Some(cube), Some(prepared)) => cube.upload(prepared),
-            _ => self.uniforms.upload(&self.bytes),
+            _ => self.uniforms.upload(),
         });
         uploads.extend(self.matrices.uploads());
     }
@@ -186,9 +153,7 @@ impl Recorder {
         casters: &FrameCasters<'a>,
         lists: &mut DrawLists<'a>,
     ) -> Result<Option<PreparedCubePass>, ShadowError> {
-        self.bytes.clear();
-        self.bytes
-            .resize(self.stride as usize * self.layers.len(), 0);
+        self.uniforms.clear(self.layers.len());
         for draws in views.iter_mut() {
             let layer = &mut self.layers[draws.view.index() as usize];
             draws.plan = layer.cache.plan(draws, casters, self.can_copy);
@@ -203,10 +168,7 @@ impl Recorder {
             }
             let render_reach = layer.cache.render_reach_after(draws);
             draws.view = draws.view.over_depths_from(render_reach);
-            let uniform = CasterViewUniform::of(&draws.view);
-            let start = self.stride as usize * draws.view.index() as usize;
-            self.bytes[start..][..size_of_val(&uniform)]
-                .copy_from_slice(bytemuck::bytes_of(&uniform));
+            self.uniforms.set(draws.view.index(), &draws.view);
         }
         if let Some(cube) = &self.cube {
             if views.iter().all(|draws| draws.plan == Plan::All) {
@@ -219,20 +181,8 @@ impl Recorder {
                 self.matrices.clear();
             }
         }
-        let (field, format) = (casters.field, map.format());
         let check = |index: u32, pipeline: &CasterPipeline| {
-            let index = casters.listed_index(index);
-            if pipeline.device() != device {
-                return Err(ShadowError::CasterDevice { field, index });
-            }
-            if pipeline.wgpu_pipeline(format).is_none() {
-                return Err(ShadowError::CasterFormat {
-                    field,
-                    index,
-                    format,
-                });
-            }
-            Ok(())
+            casters.check_pipeline(index, pipeline, device, map.format())
         };
         for draws in views {
             let cache = &self.layers[draws.view.index() as usize].cache;
@@ -295,13 +245,12 @@ impl Recorder {
             }
             return Recorded { passes: 1, draws };
         }
-        self.uniforms.set_written(&self.bytes);
+        self.uniforms.set_written();
         let frame = PassFrame {
             casters,
             matrices: &self.matrices,
             lists: &lists,
-            view_group: &self.bind_group,
-            stride: self.stride as u32,
+            uniforms: &self.uniforms,
             format: map.format(),
         };
         for draws in views.iter().filter(|draws| draws.plan == Plan::Keep) {

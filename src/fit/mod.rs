@@ -37,6 +37,7 @@
 //! local_need.rs   how many texels the views of local lights need
 //! square_sizes.rs  the sizes of the squares of a layer that views share; square_packing.rs: where
 //!                 they lie
+//! shadow_ray.rs   the view along one ray from a receiver to a light
 //! texel_rect.rs   the rectangle of a layer that a view is rendered into
 //! view.rs         ShadowView: the value that maps are rendered and sampled with
 //! view_rounding.rs  the rounding errors of a view
@@ -76,6 +77,7 @@ mod predicted_error;
 mod reached;
 mod region;
 mod required;
+mod shadow_ray;
 mod size_step;
 mod spacing;
 mod split;
@@ -108,6 +110,7 @@ pub(crate) use predicted_error::{
 };
 pub(crate) use reached::Reached;
 pub(crate) use region::HalfSpaces;
+pub(crate) use shadow_ray::{RayView, ShadowRay};
 pub use split::CascadeSplit;
 pub(crate) use split::MAX_CASCADES;
 pub(crate) use square_packing::{Hold, Packing, side_texels};

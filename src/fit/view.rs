@@ -107,10 +107,21 @@ impl ShadowView {
     ) -> Self {
         let (rect, depth) = (&bounds.rect, &bounds.depth);
         let size = rect.max() - rect.min;
-        let light_from_world = axes.light_from_world;
-        let world_from_light = light_from_world.transpose();
         let middle = (rect.min + size * 0.5).extend((depth.near + depth.far) * 0.5);
-        let anchor_render = (world_from_light * middle - origin).as_vec3();
+        let anchor_render = (axes.light_from_world.transpose() * middle - origin).as_vec3();
+        Self::orthographic_from(anchor_render, &LightSpace { axes, origin }, bounds, layer)
+    }
+
+    /// Returns the same view with its matrices relative to `anchor_render`, a point inside it.
+    pub(super) fn orthographic_from(
+        anchor_render: Vec3,
+        &LightSpace { axes, origin }: &LightSpace,
+        bounds: &LightSpaceBounds,
+        layer: u32,
+    ) -> Self {
+        let (rect, depth) = (&bounds.rect, &bounds.depth);
+        let size = rect.max() - rect.min;
+        let light_from_world = axes.light_from_world;
         // The anchor is rounded to f32; everything after it starts from the rounded one, so nothing
         // is lost.
         let anchor_light = light_from_world * (anchor_render.as_dvec3() + origin);
@@ -350,6 +361,20 @@ impl ShadowView {
             DVec4::new(half.x, half.y, 0.0, 1.0),
         );
         texel_from_clip * self.clip_from_anchor
+    }
+
+    /// Returns the shorter side, in world units, of a texel at a position of render space; `None`
+    /// where the map does not cover it.
+    pub(crate) fn texel_size_at(&self, position_render: DVec3) -> Option<f64> {
+        let relative = position_render - self.anchor_render.as_dvec3();
+        let clip = self.clip_from_anchor * relative.extend(1.0);
+        let covers = clip.w > 0.0 && clip.truncate().truncate().abs().max_element() <= clip.w;
+        // An orthographic view has w = 1.
+        let rect = match &self.placement {
+            ViewPlacement::Orthographic { bounds, .. } => &bounds.rect,
+            ViewPlacement::Perspective { rect, .. } => rect,
+        };
+        covers.then(|| rect.texel.min_element() * clip.w)
     }
 
     /// Returns the world distance from a local light up to which receivers are seen and beyond

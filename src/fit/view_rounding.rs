@@ -97,4 +97,4 @@ pub(crate) fn position_error_world(render_reach: f64) -> f64 {
 }
 
 /// Is u of f32: half an ulp of one.
-const UNIT_ROUNDOFF: f64 = f32::EPSILON as f64 * 0.5;
+pub(super) const UNIT_ROUNDOFF: f64 = f32::EPSILON as f64 * 0.5;

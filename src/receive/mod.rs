@@ -41,5 +41,6 @@ pub use maps::ShadowMaps;
 pub(crate) use maps::{MapsFrame, ShadowMapsDescriptor};
 pub use report::{ShadowReport, ViewReport, ViewStatus};
 pub(crate) use sampled_maps::{SampledMaps, Selection};
+pub(crate) use template::ErrorMeterPass;
 pub use uniforms::ShadowViewUniform;
 pub(crate) use uniforms::{Sampling, view_uniform_bytes};

@@ -69,6 +69,8 @@ templates! {
         name, index, any_view, pattern, sample_count, sample_count_f32, surface, normal, bias, filter, sampler,
         weight, faded, layer
     }
+    /// Defines the pass that asks a light's lookup at the places of an error meter.
+    ErrorMeterPass("error_meter.wgsl") { name, index }
 }
 
 /// Returns `source` with each hole replaced by the value of its name. Where the value is empty, the

@@ -11,8 +11,8 @@ use wgpu_shadows::{
     ShadowBindingsDescriptor, ShadowError, ShadowViewUniform, SpotShadow, SpotShadowDescriptor,
     caster::CasterPipelineDescriptor, caster::CasterVertex, caster::ModelTransform,
     caster::PositionAttribute, debug::DebugImage, debug::DebugView, error::BindingsError,
-    error::CasterError, error::DebugViewError, pool::OmniShadowPool, pool::PoolDescriptor,
-    pool::SpotShadowPool,
+    error::CasterError, error::DebugViewError, meter::ErrorMeter, meter::ErrorMeterDescriptor,
+    pool::OmniShadowPool, pool::PoolDescriptor, pool::SpotShadowPool,
 };
 
 use crate::fixtures::frames::{Coverage, DirectionalFrame, RecordFrame};
@@ -154,6 +154,13 @@ fn all(gpu: &Gpu, what: &str) -> usize {
             ..Default::default()
         };
         answered(ShadowBindings::new(device, &descriptor), what, refusals);
+    }
+    for &maps in &lights {
+        let descriptor = ErrorMeterDescriptor {
+            places_per_frame: 2,
+            ..ErrorMeterDescriptor::new(maps)
+        };
+        answered(ErrorMeter::new(&descriptor), what, refusals);
     }
     if let (Some(view), true) = (&debug_view, !lights.is_empty()) {
         let target = color_target(gpu, 4);

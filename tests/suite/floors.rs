@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 /// Lists the folders of `src` from the ground up. A folder may use itself and those before it. The
 /// files directly in `src` and those of `src/error` may be used by all, and use what they need.
-const FLOORS: [&str; 6] = ["gpu", "fit", "cast", "receive", "debug", "light"];
+const FLOORS: [&str; 7] = ["gpu", "fit", "cast", "receive", "debug", "light", "meter"];
 
 /// Holds what the files under `src` use of each other: for each file, the files from which it
 /// imports a name.

@@ -30,6 +30,7 @@ mod distance_limit;
 mod distant_changes;
 mod emitted_wgsl;
 mod engine_wgsl;
+mod error_meter;
 mod errors;
 mod far_origin_lamps;
 mod far_origins;

@@ -160,7 +160,13 @@ fn templates_validate_as_they_stand() {
         kind.push((name, text));
     }
     assert!(!selections.is_empty() && !lookups.is_empty() && !shared.is_empty());
-    let modules = ["view", "place", "cube_face", "filter_direction"];
+    let modules = [
+        "view",
+        "place",
+        "cube_face",
+        "filter_direction",
+        "error_meter",
+    ];
     let modules = shader::compose(&modules).expect("modules of the table");
     for (selection, selecting) in &selections {
         for (lookup, looking_up) in &lookups {

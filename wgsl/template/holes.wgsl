@@ -6,7 +6,7 @@
 // Where a hole is filled with nothing, the rest of its list item is removed as well, up to and
 // including the comma. Two holes are declared by the templates themselves: NAME, which is the name
 // of a light, and SAMPLER, which is the name of a sampler. Requires: view, place, cube_face,
-// filter_direction.
+// filter_direction, error_meter.
 
 // Is the number of the bind group, with the suffix `u`.
 const GROUP: u32 = 1u;
