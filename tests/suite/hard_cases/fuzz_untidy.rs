@@ -164,22 +164,26 @@ impl Untidy {
             // The margin is three texels, stretched by the slant of the light.
             let margin = 3.0 * texel / -self.light.y + 0.005;
             let here = dark(position);
-            let settled = if here {
-                let around = (0..12).map(|step| {
-                    let angle = f64::from(step) * std::f64::consts::TAU / 12.0;
-                    position + DVec3::new(angle.cos(), 0.0, angle.sin()) * margin
-                });
-                let mut around = around.flat_map(|place| [place, place + DVec3::Y * gap]);
-                around.all(dark)
-            } else {
-                // A thin shadow close by may lie between any places around. A ray that passes a box
-                // at no more than the margin meets the box that is wider by as much.
-                let wider = Vec3::splat(margin as f32);
+            // A thin shadow, or a thin gap between two, may lie between any places around. A ray
+            // that passes a box at no more than the margin meets the box that is wider by as much,
+            // and one that is in it by the margin meets the box that is narrower.
+            let meets = |place: DVec3, wider: f64| {
+                let wider = Vec3::splat(wider as f32);
                 let mut boxes = self.boxes.iter().map(|(corner, size)| {
-                    let mesh = Mesh::cuboid(*corner - wider, *corner + *size + wider);
-                    mesh.triangles(&Mat4::IDENTITY)
+                    // No light comes from below the ground.
+                    let low = *corner - wider * Vec3::new(1.0, 0.0, 1.0);
+                    (low, *corner + *size + wider)
                 });
-                !boxes.any(|triangles| occluded(&triangles, position, -light, 0.0))
+                boxes.any(|(low, high)| {
+                    let triangles = Mesh::cuboid(low, high).triangles(&Mat4::IDENTITY);
+                    low.cmplt(high).all() && occluded(&triangles, place, -light, 0.0)
+                })
+            };
+            let settled = if here {
+                let places = [position, position + DVec3::Y * gap];
+                places.into_iter().all(|place| meets(place, -margin))
+            } else {
+                !meets(position, margin)
             };
             points.push(Point::rounded(position, DVec3::Y));
             truths.push(settled.then_some(here));
