@@ -96,6 +96,8 @@ impl LocalFit {
             let held_rect = HeldRect::fit(&request, self.held[index].as_ref());
             let rect = held_rect.rect;
             let region = view.region(rect.min, rect.max(), nearest);
+            // The rectangle may be wider than the square of the casters that it was fitted to.
+            reached.find_candidates(&region, light);
             let (mut near, mut caster_reach) = (f64::INFINITY, 0.0_f64);
             for caster in reached.candidates() {
                 // From there on the power of two below the distance is no less than the near plane.

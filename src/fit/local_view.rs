@@ -20,8 +20,6 @@ pub(crate) struct ViewFrame<'a> {
 impl ViewFrame<'_> {
     /// Returns the rectangle of tangents that both casters and receivers cover, or `None` if they
     /// share none. Where lookups reach around their receiver, casters alone decide.
-    ///
-    /// The candidates of `reached` are then the casters that may be in the view.
     pub(super) fn needed(
         &self,
         input: &LocalInput<'_>,
