@@ -1,5 +1,6 @@
 //! Owns the scene's shadows, and the WGSL that samples them: a `DirectionalShadow` for each sun,
-//! and pools for spot and point lights.
+//! an `OmniShadow` for a point light that is alone, and pools for spots and for several point
+//! lights.
 
 use std::fmt::Write;
 
@@ -7,9 +8,10 @@ use example_support::gltf_file::scene::{Light, LightKind, Scene};
 use shadow_support::gpu::Gpu;
 use wgpu_shadows::{
     Casters, Coverage, DirectionalLight, DirectionalShadow, DirectionalShadowDescriptor, OmniLight,
-    ShadowBindings, ShadowBindingsDescriptor, ShadowCaster, ShadowFrameDescriptor, ShadowMaps,
-    ShadowScene, SpotLight, pool::OmniShadowPool, pool::PoolDescriptor, pool::PoolLight,
-    pool::ShadowSlot, pool::SpotShadowPool, report::ShadowReport,
+    OmniShadow, OmniShadowDescriptor, ShadowBindings, ShadowBindingsDescriptor, ShadowCaster,
+    ShadowFrameDescriptor, ShadowMaps, ShadowScene, SpotLight, pool::OmniShadowPool,
+    pool::PoolDescriptor, pool::PoolLight, pool::ShadowSlot, pool::SpotShadowPool,
+    report::ShadowReport,
 };
 
 use crate::options::Options;
@@ -29,6 +31,10 @@ enum Maps {
         shadow: Box<DirectionalShadow>,
         light: usize,
     },
+    Lamp {
+        shadow: Box<OmniShadow>,
+        light: usize,
+    },
     Spots {
         pool: Box<SpotShadowPool>,
         slots: Vec<(ShadowSlot, usize)>,
@@ -43,23 +49,20 @@ impl Maps {
     fn source(&self) -> &ShadowMaps {
         match self {
             Self::Sun { shadow, .. } => shadow.maps(),
+            Self::Lamp { shadow, .. } => shadow.maps(),
             Self::Spots { pool, .. } => pool.maps(),
             Self::Lamps { pool, .. } => pool.maps(),
         }
     }
 
     fn report(&self) -> &ShadowReport {
-        match self {
-            Self::Sun { shadow, .. } => shadow.maps().report(),
-            Self::Spots { pool, .. } => pool.maps().report(),
-            Self::Lamps { pool, .. } => pool.maps().report(),
-        }
+        self.source().report()
     }
 
     /// Returns the lights of the scene, with their index in the pool.
     fn lights(&self) -> Vec<(usize, u32)> {
         match self {
-            Self::Sun { light, .. } => vec![(*light, 0)],
+            Self::Sun { light, .. } | Self::Lamp { light, .. } => vec![(*light, 0)],
             Self::Spots { slots, .. } | Self::Lamps { slots, .. } => slots
                 .iter()
                 .map(|(slot, light)| (*light, slot.index()))
@@ -155,11 +158,18 @@ impl SceneLights {
             })
             .map_err(|error| error.to_string())?;
         let lights = &self.lights;
+        let lamp = |light: &Light| OmniLight {
+            position_world: scene.origin + light.position_render.as_dvec3(),
+            range: light.range,
+        };
         for (_, maps) in &mut self.maps {
             let recorded = match maps {
                 Maps::Sun { shadow, light } => {
                     let sun = DirectionalLight::new(lights[*light].direction);
                     shadow.record(encoder, &frame, &sun)
+                }
+                Maps::Lamp { shadow, light } => {
+                    shadow.record(encoder, &frame, &lamp(&lights[*light]))
                 }
                 Maps::Spots { pool, slots } => {
                     let spot = |light: &Light| SpotLight {
@@ -171,10 +181,6 @@ impl SceneLights {
                     pool.record(encoder, &frame, &listed(slots, lights, spot), None)
                 }
                 Maps::Lamps { pool, slots } => {
-                    let lamp = |light: &Light| OmniLight {
-                        position_world: scene.origin + light.position_render.as_dvec3(),
-                        range: light.range,
-                    };
                     pool.record(encoder, &frame, &listed(slots, lights, lamp), None)
                 }
             };
@@ -188,6 +194,7 @@ impl SceneLights {
         for (_, maps) in &mut self.maps {
             match maps {
                 Maps::Sun { shadow, .. } => shadow.invalidate(),
+                Maps::Lamp { shadow, .. } => shadow.invalidate(),
                 Maps::Spots { pool, .. } => pool.invalidate(),
                 Maps::Lamps { pool, .. } => pool.invalidate(),
             }
@@ -280,7 +287,8 @@ fn listed<L>(
         .collect()
 }
 
-/// Makes maps for suns one by one, and for spot and point lights in pools.
+/// Makes maps for suns one by one, for a point light that is alone, and for spots and several point
+/// lights in pools.
 /// Names end in a letter, as the library requires.
 fn make_maps(
     gpu: &Gpu,
@@ -343,6 +351,21 @@ fn make_maps(
             Maps::Spots { pool, slots },
         ));
     }
+    if let [light] = lamps[..] {
+        let default = OmniShadowDescriptor::default();
+        let descriptor = OmniShadowDescriptor {
+            label: Some("lamp"),
+            map_size: options.map_size.unwrap_or(default.map_size),
+            filter: options.local_filter(),
+            bias: options.bias,
+            ..default
+        };
+        let shadow =
+            OmniShadow::new(&gpu.device, &descriptor).map_err(|error| error.to_string())?;
+        let shadow = Box::new(shadow);
+        maps.push(("lamp_a".to_owned(), Maps::Lamp { shadow, light }));
+        return Ok(maps);
+    }
     for (number, lights) in lamps.chunks(POOL_CAPACITY).enumerate() {
         let mut pool = OmniShadowPool::new(&gpu.device, &descriptor("lamps", lights))
             .map_err(|error| error.to_string())?;
@@ -370,7 +393,7 @@ fn visibility_of_light(maps: &[(String, Maps)]) -> String {
     let mut text = "fn visibility_of_light(maps: u32, index: u32, position: vec3<f32>, normal: vec3<f32>) -> f32 {\n    switch maps {\n".to_owned();
     for (number, (name, maps)) in (1..).zip(maps) {
         let index = match maps {
-            Maps::Sun { .. } => "",
+            Maps::Sun { .. } | Maps::Lamp { .. } => "",
             Maps::Spots { .. } | Maps::Lamps { .. } => "index, ",
         };
         // Writing to a String does not fail.

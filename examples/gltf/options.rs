@@ -25,8 +25,9 @@ pub struct Options {
     /// Sets the size of the image in pixels.
     #[arg(long, default_value = "960x540", value_parser = size)]
     pub size: [u32; 2],
-    /// Sets the texels per side of each shadow map, which spots and points share [default: 2048 for
-    /// a sun, 4096 for all spots and for all points]
+    /// Sets the texels per side of each shadow map, and of each face of a point light that is alone;
+    /// spots share a map, and so do several points [default: 2048 for a sun, 1024 for a face, 4096
+    /// for all spots and for all points]
     #[arg(long)]
     pub map_size: Option<u32>,
     /// Selects nearest, hardware, box, bilinear, tent3, tent5 or tent7; the gathered ones with an
