@@ -98,6 +98,11 @@ impl<'a> ErrorMeterDescriptor<'a> {
 /// asked at two random points for each place. Where shadows end by a setting (a camera's distance
 /// limit, a fade), the shadow that is missing counts as false light.
 ///
+/// A ray is as exact as f32 positions are at the farthest corner of the bounds that it meets. Where
+/// that is coarser than the map's texel at the receiver, the place is left out and counted in
+/// [`MeterReport`]; something tiny between a receiver and a lamp, under bounds of hundreds of
+/// kilometres, can still be measured wrongly.
+///
 /// # Results
 /// Results are mapped when the encoder's submission is done, and the engine's own submissions or
 /// polls notice that; nothing waits. While the results of four frames are on their way, frames are
