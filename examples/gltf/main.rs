@@ -18,6 +18,7 @@
 mod casters;
 mod geometry;
 mod lights;
+mod maps;
 mod measure;
 mod options;
 mod render;

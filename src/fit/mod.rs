@@ -40,6 +40,7 @@
 //! shadow_ray.rs   the view along one ray from a receiver to a light
 //! texel_rect.rs   the rectangle of a layer that a view is rendered into
 //! view.rs         ShadowView: the value that maps are rendered and sampled with
+//! view_placement.rs  where a view is in the world
 //! view_rounding.rs  the rounding errors of a view
 //! ```
 
@@ -86,6 +87,7 @@ mod square_sizes;
 mod stability;
 mod texel_rect;
 mod view;
+mod view_placement;
 mod view_rounding;
 mod visible;
 
@@ -117,6 +119,7 @@ pub(crate) use square_packing::{Hold, Packing, side_texels};
 pub(crate) use square_sizes::{SquareSizes, Wanted};
 pub use stability::Stability;
 pub use texel_rect::TexelRect;
+pub(crate) use view::PerspectiveView;
 pub use view::ShadowView;
-pub(crate) use view::{PerspectiveView, ViewPlacement};
+pub(crate) use view_placement::ViewPlacement;
 pub(crate) use visible::Receivers;

@@ -6,6 +6,7 @@ use crate::ShadowError;
 use crate::fit::axes::{LightAxes, LightSpace};
 use crate::fit::map_rect::{LightSpaceBounds, MapRect};
 use crate::fit::texel_rect::TexelRect;
+use crate::fit::view_placement::ViewPlacement;
 
 /// Describes one depth render: a cascade of a directional light, the map of a spot light, a face of
 /// a point light.
@@ -46,26 +47,6 @@ pub struct ShadowView {
     range: f64,
 }
 
-/// Describes what a view covers, in absolute world terms: two views with equal placements render
-/// the same map of the same world, wherever render space begins.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum ViewPlacement {
-    Orthographic {
-        axes: LightAxes,
-        bounds: LightSpaceBounds,
-    },
-    Perspective {
-        axes: LightAxes,
-        position_world: DVec3,
-        /// Is in tangents.
-        rect: MapRect,
-        /// Is the world distance of the near plane.
-        near: f64,
-        /// Is the cosine of the half-angle of a cone; -2 if there is no cone.
-        cone_cosine: f64,
-    },
-}
-
 /// Describes the view of a local light.
 pub(crate) struct PerspectiveView<'a> {
     pub axes: &'a LightAxes,
@@ -84,17 +65,6 @@ pub(crate) struct PerspectiveView<'a> {
     pub range: f64,
     /// Is the cosine of the half-angle of a cone; -2 if there is no cone.
     pub cone_cosine: f64,
-}
-
-impl ViewPlacement {
-    /// Returns the world distance of the view's farthest corner, or of a local light, from the
-    /// world's origin.
-    fn reach_from_origin(&self) -> f64 {
-        match self {
-            Self::Orthographic { bounds, .. } => bounds.bounds().reach(),
-            Self::Perspective { position_world, .. } => position_world.length(),
-        }
-    }
 }
 
 impl ShadowView {
@@ -336,10 +306,7 @@ impl ShadowView {
     /// the world (for a local light around it), modulo 65536: x in the low half, y, which grows
     /// downward, in the high.
     pub(crate) fn world_grid(&self) -> u32 {
-        let rect = match &self.placement {
-            ViewPlacement::Orthographic { bounds, .. } => &bounds.rect,
-            ViewPlacement::Perspective { rect, .. } => rect,
-        };
+        let rect = self.placement.rect();
         let first = DVec2::new(rect.min.x, -rect.max().y) / rect.texel;
         let first = first - self.texels.min.as_dvec2();
         let wrapped = first.round().rem_euclid(DVec2::splat(65_536.0));
@@ -370,10 +337,7 @@ impl ShadowView {
         let clip = self.clip_from_anchor * relative.extend(1.0);
         let covers = clip.w > 0.0 && clip.truncate().truncate().abs().max_element() <= clip.w;
         // An orthographic view has w = 1.
-        let rect = match &self.placement {
-            ViewPlacement::Orthographic { bounds, .. } => &bounds.rect,
-            ViewPlacement::Perspective { rect, .. } => rect,
-        };
+        let rect = self.placement.rect();
         covers.then(|| rect.texel.min_element() * clip.w)
     }
 

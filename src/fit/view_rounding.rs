@@ -1,7 +1,8 @@
 //! States how far rounding may take depths and positions of a view, and which depths may be kept
 //! for it.
 
-use crate::fit::view::{ShadowView, ViewPlacement};
+use crate::fit::view::ShadowView;
+use crate::fit::view_placement::ViewPlacement;
 
 impl ShadowView {
     /// Returns the largest render coordinate, in world units, whose rounding all positions inside

@@ -3,7 +3,12 @@
 use std::fmt;
 
 use glam::{DVec3, DVec4, Mat4};
-use shadow_support::truth::World;
+use image::RgbaImage;
+use shadow_support::scene::Light;
+use shadow_support::triangle::Triangle;
+use shadow_support::truth::{LightInWorld, World};
+
+use crate::camera::Camera;
 
 /// Is how far an image is from the truth, over the pixels whose surface faces the light.
 #[derive(Clone, Copy, Debug)]
@@ -54,6 +59,27 @@ impl ImageError {
             false_shadow: 100.0 * dark / count,
             false_light: 100.0 * lit / count,
         }
+    }
+}
+
+/// Prints the errors of an image whose components hold the visibility of the named lights, in this
+/// order. `reach` is the distance from the origin within which all triangles are.
+pub fn print_errors(
+    lights: &[(&str, Light)],
+    (triangles, reach): (&[Triangle], f64),
+    camera: &Camera,
+    visibility: &RgbaImage,
+) {
+    for (channel, (name, light)) in lights.iter().enumerate() {
+        let light = LightInWorld::new(light, DVec3::ZERO);
+        let error = ImageError::measure(
+            &World::from_triangles(triangles, reach, light),
+            camera.eye.as_dvec3(),
+            camera.clip_from_render(),
+            visibility.dimensions().into(),
+            |x, y| Some(f64::from(visibility.get_pixel(x, y).0[channel]) / 255.0),
+        );
+        println!("{name}: {error}");
     }
 }
 

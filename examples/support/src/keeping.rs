@@ -1,6 +1,7 @@
 //! Checks that maps which are kept are never stale: the same frames are drawn with maps that are
 //! kept, and with lights that are invalidated before every frame.
 
+use std::error::Error;
 use std::time::Duration;
 
 /// Is one frame of a run.
@@ -9,6 +10,28 @@ pub struct Frame {
     /// Is how long the library took to record it, and the number of passes that it recorded.
     pub record_time: Duration,
     pub passes: u32,
+}
+
+/// Is an engine that draws frames with shadows.
+pub trait Engine {
+    /// Draws a frame. Where it `keeps_nothing`, its lights are invalidated before.
+    fn draw(&mut self, frame: u32, keeps_nothing: bool) -> Result<Frame, Box<dyn Error>>;
+}
+
+/// Runs two engines, one of which keeps nothing, for `moving` frames and as many in which nothing
+/// moves, and checks them.
+pub fn compare<E: Engine>(
+    moving: u32,
+    make: impl Fn() -> Result<E, Box<dyn Error>>,
+) -> Result<(), Box<dyn Error>> {
+    let run = |keeps_nothing: bool| -> Result<Vec<Frame>, Box<dyn Error>> {
+        let mut engine = make()?;
+        let frames = (0..2 * moving).map(|frame| frame.min(moving - 1));
+        frames
+            .map(|frame| engine.draw(frame, keeps_nothing))
+            .collect()
+    };
+    Ok(check(&run(false)?, &run(true)?, moving as usize)?)
 }
 
 /// Compares the images of two runs bit for bit, and prints what they cost. In the first `moving`

@@ -11,13 +11,12 @@ mod shadows;
 use std::error::Error;
 use std::time::{Duration, Instant};
 
-use example_support::image_error::ImageError;
+use example_support::image_error;
 use example_support::keeping::{self, Frame};
 use example_support::picture;
 use shadow_support::gpu::{Gpu, GpuRequest};
 use shadow_support::readback;
 use shadow_support::scene::Light;
-use shadow_support::truth::{LightInWorld, World};
 
 use crate::renderer::Renderer;
 use crate::scene::{Lights, Scene, TOWARD_SUN, camera};
@@ -30,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let gpu = Gpu::new(&GpuRequest::default())?;
     let size = [960, 540];
     let mut engine = Engine::new(&gpu, size)?;
-    engine.draw(0, false)?;
+    engine.draw_frame(0, false)?;
     let image = readback::rgba8(&gpu, &engine.renderer.image);
     let visibility = readback::rgba8(&gpu, &engine.renderer.visibility);
     let both = [image.as_raw().as_slice(), visibility.as_raw()].concat();
@@ -38,24 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("maps: {} MiB", engine.shadows.totals().1 >> 20);
     measure_errors(&engine, &visibility);
 
-    let mut runs = Vec::new();
-    for keeps_nothing in [false, true] {
-        let mut engine = Engine::new(&gpu, [320, 180])?;
-        let mut frames = Vec::new();
-        for frame in 0..2 * FRAMES {
-            let record_time = engine.draw(frame.min(FRAMES - 1), keeps_nothing)?;
-            let pixels = readback::rgba8(&gpu, &engine.renderer.visibility).into_raw();
-            let passes = engine.shadows.totals().0;
-            frames.push(Frame {
-                pixels,
-                record_time,
-                passes,
-            });
-        }
-        runs.push(frames);
-    }
-    keeping::check(&runs[0], &runs[1], FRAMES as usize)?;
-    Ok(())
+    keeping::compare(FRAMES, || Engine::new(&gpu, [320, 180]))
 }
 
 struct Engine<'g> {
@@ -82,7 +64,7 @@ impl<'g> Engine<'g> {
     }
 
     /// Draws a frame, and returns how long the library took to record its part.
-    fn draw(&mut self, frame: u32, keeps_nothing: bool) -> Result<Duration, Box<dyn Error>> {
+    fn draw_frame(&mut self, frame: u32, keeps_nothing: bool) -> Result<Duration, Box<dyn Error>> {
         self.scene.advance(frame);
         if keeps_nothing {
             self.shadows.invalidate();
@@ -104,6 +86,17 @@ impl<'g> Engine<'g> {
         );
         self.gpu.submit(encoder);
         Ok(record_time)
+    }
+}
+
+impl keeping::Engine for Engine<'_> {
+    fn draw(&mut self, frame: u32, keeps_nothing: bool) -> Result<Frame, Box<dyn Error>> {
+        let record_time = self.draw_frame(frame, keeps_nothing)?;
+        Ok(Frame {
+            pixels: readback::rgba8(self.gpu, &self.renderer.visibility).into_raw(),
+            record_time,
+            passes: self.shadows.totals().0,
+        })
     }
 }
 
@@ -138,16 +131,6 @@ fn measure_errors(engine: &Engine<'_>, visibility: &image::RgbaImage) {
         ),
     ];
     let triangles = engine.scene.triangles();
-    for (channel, (name, light)) in lights.into_iter().enumerate() {
-        let light = LightInWorld::new(&light, glam::DVec3::ZERO);
-        let camera = camera(engine.size);
-        let error = ImageError::measure(
-            &World::from_triangles(&triangles, 18.0, light),
-            camera.eye.as_dvec3(),
-            camera.clip_from_render(),
-            engine.size,
-            |x, y| Some(f64::from(visibility.get_pixel(x, y).0[channel]) / 255.0),
-        );
-        println!("{name}: {error}");
-    }
+    let camera = camera(engine.size);
+    image_error::print_errors(&lights, (&triangles, 18.0), &camera, visibility);
 }
