@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::ShadowView;
 use crate::cast::draw_casters::{DrawContext, PassDefaults, draw_casters};
 use crate::cast::draw_list::DrawLists;
 use crate::cast::instance_matrices::InstanceMatrices;
@@ -63,12 +64,12 @@ impl Layer {
 
 impl PassFrame<'_, '_> {
     /// Returns the state of a pass that the casters of a view rely on.
-    pub(super) fn defaults(&self, draws: &ViewDraws) -> PassDefaults<'_> {
-        let (view_group, offset) = self.uniforms.group(draws.view.index());
+    pub(super) fn defaults(&self, view: &ShadowView) -> PassDefaults<'_> {
+        let (view_group, offset) = self.uniforms.group(view.index());
         PassDefaults {
             view_group,
             offset: Some(offset),
-            texels: draws.view.texels(),
+            texels: view.texels(),
         }
     }
 
@@ -77,15 +78,15 @@ impl PassFrame<'_, '_> {
     pub(super) fn draw(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
-        draws: &ViewDraws,
+        view: &ShadowView,
         calls: &Range<usize>,
     ) {
-        let defaults = self.defaults(draws);
+        let defaults = self.defaults(view);
         let calls = self.lists.calls(calls.clone());
         let context = DrawContext {
             casters: self.casters,
             matrices: self.matrices,
-            view: &draws.view,
+            view,
         };
         // The planning of the frame has checked that there is a pipeline for the format.
         draw_casters(pass, &defaults, &context, calls, |pipeline| {
@@ -140,7 +141,7 @@ pub(super) fn record_layer(
     {
         if draws.plan == Plan::RenewStaticCache {
             let mut pass = begin_pass(encoder, &layer.label, static_cache.layer_view(0), CLEAR);
-            frame.draw(&mut pass, draws, &draws.static_calls);
+            frame.draw(&mut pass, &draws.view, &draws.static_calls);
         } else {
             frame.count_copied(draws, &cache);
         }
@@ -153,7 +154,7 @@ pub(super) fn record_layer(
     }
     let target = map.layer_view(draws.view.layer());
     let mut pass = begin_pass(encoder, &layer.label, target, load);
-    frame.draw(&mut pass, draws, &draws.calls);
+    frame.draw(&mut pass, &draws.view, &draws.calls);
     drop(pass);
     layer.cache = cache;
     draws.plan.renders()

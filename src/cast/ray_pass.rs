@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use crate::cast::draw_casters::{DrawContext, PassDefaults, draw_casters};
 use crate::cast::draw_list::{DrawCall, DrawLists};
 use crate::cast::instance_matrices::InstanceMatrices;
+use crate::cast::layer_pass::{PassFrame, begin_pass};
 use crate::cast::view_uniform::ViewUniforms;
-use crate::cast::{CLEAR, CasterPipeline, FrameCasters, depth_attachment};
+use crate::cast::{CLEAR, CasterPipeline, FrameCasters};
 use crate::gpu::{DepthFormat, DepthMap, Upload};
 use crate::{ShadowError, ShadowView};
 
@@ -106,33 +106,19 @@ impl RayPass {
         casters: &FrameCasters<'_>,
     ) -> RayCost {
         self.uniforms.set_written();
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some(&self.label),
-            color_attachments: &[],
-            depth_stencil_attachment: Some(depth_attachment(self.map.layer_view(0), CLEAR)),
-            timestamp_writes: None,
-            occlusion_query_set: None,
-            multiview_mask: None,
-        });
+        let frame = PassFrame {
+            casters,
+            matrices: &self.matrices,
+            lists: &prepared.lists,
+            uniforms: &self.uniforms,
+            format: self.map.format(),
+        };
+        let mut pass = begin_pass(encoder, &self.label, self.map.layer_view(0), CLEAR);
         let mut cost = RayCost::default();
         for (ray, calls) in rays.iter().zip(&prepared.calls) {
-            let (view_group, offset) = self.uniforms.group(ray.view.index());
-            let defaults = PassDefaults {
-                view_group,
-                offset: Some(offset),
-                texels: ray.view.texels(),
-            };
-            defaults.set_rect(&mut pass);
-            let context = DrawContext {
-                casters,
-                matrices: &self.matrices,
-                view: &ray.view,
-            };
+            frame.defaults(&ray.view).set_rect(&mut pass);
+            frame.draw(&mut pass, &ray.view, calls);
             let calls = prepared.lists.calls(calls.clone());
-            let format = self.map.format();
-            draw_casters(&mut pass, &defaults, &context, calls, |pipeline| {
-                pipeline.wgpu_pipeline(format)
-            });
             cost.draws += calls.len() as u32;
             cost.triangles += triangles(calls, casters);
         }

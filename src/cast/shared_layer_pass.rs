@@ -95,12 +95,12 @@ fn draw_view(
     (before, calls): (Before, &Range<usize>),
 ) {
     pass.push_debug_group(label);
-    frame.defaults(draws).set_rect(pass);
+    frame.defaults(&draws.view).set_rect(pass);
     match before {
         Before::Cleared => {}
         Before::Clear => shared.clear(pass),
         Before::StaticCasters => shared.copy_static_casters(pass),
     }
-    frame.draw(pass, draws, calls);
+    frame.draw(pass, &draws.view, calls);
     pass.pop_debug_group();
 }
